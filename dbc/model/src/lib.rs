@@ -1,0 +1,1 @@
+//! The database model behind generated and run-time codecs: parse, check, encode, decode, generate.

@@ -1,0 +1,1 @@
+//! The two ECUs, sans-IO: frames and electrical signals in and out, time as an argument.

@@ -1,0 +1,1 @@
+//! The emulator: ECU pins wired to plant sensors.

@@ -1,0 +1,1 @@
+//! The safety kernel: allow, clamp or block, without allocation.

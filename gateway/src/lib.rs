@@ -1,0 +1,1 @@
+//! Policy actions to CAN frames and back, under the safety kernel.

@@ -1,0 +1,1 @@
+//! u-blox UBX frames: NAV-PVT and NAV-RELPOSNED, both ways.

@@ -1,0 +1,1 @@
+//! The plant: a rapier3d vehicle made of blocks that can be stepped alone.

@@ -1,0 +1,1 @@
+//! Closed-loop scenarios: what to run, what must hold, and the runner.

@@ -10,8 +10,8 @@ mod wheel;
 
 pub use linkage::{ArmPose, Linkage};
 pub use numbers::{
-    Arms, Articulation, Drive, Frames, Hydraulics, Machine, MachineError, Masses, Pointing, Sensors,
-    Vehicle, Wheels,
+    Arms, Articulation, Drive, Frames, Hydraulics, Machine, MachineError, Masses, Pointing,
+    Sensors, Vehicle, Wheels,
 };
 pub use time::SimTime;
 pub use wheel::{Axle, PerWheel, Side, Wheel};

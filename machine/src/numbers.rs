@@ -155,8 +155,8 @@ impl Default for Vehicle {
             wheel_gyration_m: 0.5,
             arm_pivot_y_m: 1.175,
             circuit_gain_nms: 10_000.0,
-            joint_stiffness_nm: 4.0e6,
-            joint_damping_nms: 4.0e5,
+            joint_stiffness_nm: 2.0e7,
+            joint_damping_nms: 1.0e6,
         }
     }
 }
@@ -188,8 +188,10 @@ impl Machine {
     /// # Errors
     /// [`MachineError`], with the file, the line and the remedy.
     pub fn load(path: &Path) -> Result<Self, MachineError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| MachineError::Read { path: path.to_owned(), source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| MachineError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
         Self::parse(&text, path)
     }
 
@@ -231,10 +233,7 @@ impl Machine {
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
         let m = &self.masses;
-        m.front_frame_kg
-            + m.middle_frame_kg
-            + m.rear_frame_kg
-            + 6.0 * (m.arm_kg + m.wheel_kg)
+        m.front_frame_kg + m.middle_frame_kg + m.rear_frame_kg + 6.0 * (m.arm_kg + m.wheel_kg)
     }
 
     fn check(&self, path: &Path) -> Result<(), MachineError> {
@@ -251,15 +250,26 @@ impl Machine {
             ("arms.area_bore_m2", self.arms.area_bore_m2),
             ("arms.area_rod_m2", self.arms.area_rod_m2),
             ("hydraulics.speed_full_m_s", self.hydraulics.speed_full_m_s),
-            ("hydraulics.lock_stiffness_n_m", self.hydraulics.lock_stiffness_n_m),
+            (
+                "hydraulics.lock_stiffness_n_m",
+                self.hydraulics.lock_stiffness_n_m,
+            ),
             ("drive.speed_full_m_s", self.drive.speed_full_m_s),
-            ("drive.speed_time_constant_s", self.drive.speed_time_constant_s),
+            (
+                "drive.speed_time_constant_s",
+                self.drive.speed_time_constant_s,
+            ),
             ("sensors.gnss_rate_hz", self.sensors.gnss_rate_hz),
         ];
         for (key, value) in positive {
             if !(value.is_finite() && value > 0.0) {
                 let must = "it must be finite and above zero";
-                return Err(MachineError::Range { path: path.to_owned(), key, value, must });
+                return Err(MachineError::Range {
+                    path: path.to_owned(),
+                    key,
+                    value,
+                    must,
+                });
             }
         }
         Ok(())
@@ -267,7 +277,11 @@ impl Machine {
 }
 
 fn line_of(text: &str, offset: usize) -> usize {
-    text.as_bytes()[..offset.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1
+    text.as_bytes()[..offset.min(text.len())]
+        .iter()
+        .filter(|&&b| b == b'\n')
+        .count()
+        + 1
 }
 
 #[cfg(test)]
@@ -282,9 +296,14 @@ mod tests {
     #[test]
     fn an_unknown_key_is_refused_with_its_line() {
         let text = XT28.replace("arm_kg = 200.0", "arm_lb = 441.0");
-        let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
+        let error = Machine::parse(&text, Path::new("m.toml"))
+            .unwrap_err()
+            .to_string();
         let line = text.lines().position(|l| l.starts_with("arm_lb")).unwrap() + 1;
-        assert!(error.starts_with(&format!("m.toml:{line}: unknown field `arm_lb`")), "{error}");
+        assert!(
+            error.starts_with(&format!("m.toml:{line}: unknown field `arm_lb`")),
+            "{error}"
+        );
         assert!(error.contains("arm_kg"), "{error}");
     }
 
@@ -292,7 +311,9 @@ mod tests {
     fn a_number_no_machine_can_have_is_refused() {
         for bad in ["-1.0", "0.0", "nan", "inf"] {
             let text = XT28.replace("radius_m = 0.74", &format!("radius_m = {bad}"));
-            let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
+            let error = Machine::parse(&text, Path::new("m.toml"))
+                .unwrap_err()
+                .to_string();
             assert!(error.contains("wheels.radius_m"), "{error}");
         }
     }

@@ -1,0 +1,265 @@
+//! Engine and hydrostatic transmission: two circuits of three parallel motors, equal pressure in each.
+//!
+//! A circuit is a differential (paper 3.2): its motors share the torque by their displacement, and
+//! the displacement-weighted mean of their speeds follows the pump. The engine holds the mean of
+//! all six without steady error, within its torque and power.
+
+use xt28_machine::{Machine, PerWheel, Wheel};
+
+/// Torque per wheel for 1 rad/s between the mean of all six and its target, Nm s (assumed).
+const MEAN_GAIN_NMS: f64 = 30_000.0;
+/// The same, integrated: Nm/rad (assumed; leaves no steady error after about a second).
+const MEAN_INTEGRAL_NM: f64 = 60_000.0;
+/// Speed ratio of the sequence law: full displacement of pump and motors is a third of full speed.
+const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
+/// Charge pressure of the closed circuits, Pa (assumed).
+const CHARGE_PRESSURE_PA: f64 = 25.0e5;
+/// Pressure above charge at the largest wheel torque, Pa (assumed).
+const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
+/// A wheel this much off its circuit's mean is pulled back, rad/s (assumed: 4 rpm).
+const SLIP_FREE_RAD_S: f64 = 4.0 * core::f64::consts::TAU / 60.0;
+/// Torque beyond that, Nm s (assumed).
+const SLIP_GAIN_NMS: f64 = 6_000.0;
+
+/// Parameters of the transmission.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    circuits: [[Wheel; 3]; 2],
+    speed_full_rad_s: f64,
+    engine_speed_rpm: f64,
+    engine_torque_max_nm: f64,
+    engine_power_w: f64,
+    wheel_torque_max_nm: f64,
+    circuit_gain_nms: f64,
+}
+
+/// What the transmission remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveState {
+    /// Integral part of the torque that holds the mean speed, Nm a wheel.
+    pub mean_torque_nm: f64,
+}
+
+/// What acts on the transmission.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveInput {
+    /// Displacement of pumps 1 and 2, -1 to 1.
+    pub pump_displacement: [f64; 2],
+    /// Displacement of each wheel motor, 0 to 1.
+    pub motor_displacement: PerWheel<f64>,
+    /// Engine speed, rpm.
+    pub engine_speed_rpm: f64,
+    /// Speed of each wheel about its axle, rad/s; forward > 0.
+    pub wheel_speed_rad_s: PerWheel<f64>,
+}
+
+/// What the transmission does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DriveOutput {
+    /// Torque on each wheel, Nm; forward > 0.
+    pub wheel_torque_nm: PerWheel<f64>,
+    /// Pressures 1A 1B 2A 2B, Pa; B is the forward side (facts 1.1).
+    pub pump_pressure_pa: [f64; 4],
+    /// Power taken from the engine, W.
+    pub power_w: f64,
+}
+
+impl Drive {
+    /// The transmission of this machine.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        let circuit = |names: &[String; 3], else_: [Wheel; 3]| {
+            let wheels: Vec<Wheel> = names.iter().filter_map(|n| Wheel::from_name(n)).collect();
+            <[Wheel; 3]>::try_from(wheels).unwrap_or(else_)
+        };
+        let w = &machine.wheels;
+        Self {
+            circuits: [
+                circuit(&w.circuit_1, [Wheel::Fr, Wheel::Ml, Wheel::Bl]),
+                circuit(&w.circuit_2, [Wheel::Fl, Wheel::Mr, Wheel::Br]),
+            ],
+            speed_full_rad_s: machine.drive.speed_full_m_s / w.radius_m,
+            engine_speed_rpm: machine.drive.engine_speed_rpm,
+            engine_torque_max_nm: machine.drive.engine_torque_max_nm,
+            engine_power_w: machine.drive.engine_power_w,
+            wheel_torque_max_nm: w.torque_max_nm,
+            circuit_gain_nms: machine.vehicle.circuit_gain_nms,
+        }
+    }
+
+    /// Torques and pressures now, and the state `dt_s` s later.
+    #[must_use]
+    pub fn step(
+        &self,
+        state: DriveState,
+        input: &DriveInput,
+        dt_s: f64,
+    ) -> (DriveState, DriveOutput) {
+        let targets = [0, 1].map(|c| self.target_rad_s(c, input));
+        let means = [0, 1].map(|c| self.mean_rad_s(c, input));
+        let mean_error = (targets[0] + targets[1] - means[0] - means[1]) / 2.0;
+        let common_nm = state.mean_torque_nm + MEAN_GAIN_NMS * mean_error;
+
+        let mut out = DriveOutput::default();
+        let mut circuit_nm = [0.0; 2];
+        for c in 0..2 {
+            let own = self.circuit_gain_nms * (targets[c] - means[c] - mean_error);
+            circuit_nm[c] =
+                (common_nm + own).clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
+            self.share(c, circuit_nm[c], means[c], input, &mut out.wheel_torque_nm);
+        }
+        let limit = self.limit_power(input, &mut out);
+        for (c, circuit_nm) in circuit_nm.into_iter().enumerate() {
+            let above =
+                PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / self.wheel_torque_max_nm;
+            let forward = usize::from(circuit_nm >= 0.0);
+            out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
+            out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
+        }
+        (
+            self.integrate(state, mean_error, common_nm, limit, dt_s),
+            out,
+        )
+    }
+
+    /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
+    fn target_rad_s(&self, c: usize, input: &DriveInput) -> f64 {
+        let motors: f64 = self.circuits[c]
+            .iter()
+            .map(|&w| input.motor_displacement[w])
+            .sum();
+        if motors <= 0.0 {
+            return 0.0;
+        }
+        let full = self.speed_full_rad_s * FULL_DISPLACEMENT_SHARE;
+        let engine = input.engine_speed_rpm / self.engine_speed_rpm;
+        full * engine * input.pump_displacement[c] * 3.0 / motors
+    }
+
+    /// Displacement-weighted mean speed of circuit `c`: what the oil flow sees, rad/s.
+    fn mean_rad_s(&self, c: usize, input: &DriveInput) -> f64 {
+        let (mut flow, mut motors) = (0.0, 0.0);
+        for &wheel in &self.circuits[c] {
+            flow += input.motor_displacement[wheel] * input.wheel_speed_rad_s[wheel];
+            motors += input.motor_displacement[wheel];
+        }
+        if motors > 0.0 { flow / motors } else { 0.0 }
+    }
+
+    /// One pressure, three motors: torque by displacement, and the trim of a wheel that runs away.
+    fn share(
+        &self,
+        c: usize,
+        circuit_nm: f64,
+        mean_rad_s: f64,
+        input: &DriveInput,
+        torque_nm: &mut PerWheel<f64>,
+    ) {
+        let motors: f64 = self.circuits[c]
+            .iter()
+            .map(|&w| input.motor_displacement[w])
+            .sum();
+        for &wheel in &self.circuits[c] {
+            let off = input.wheel_speed_rad_s[wheel] - mean_rad_s;
+            let beyond = off - off.clamp(-SLIP_FREE_RAD_S, SLIP_FREE_RAD_S);
+            let share = if motors > 0.0 {
+                3.0 * input.motor_displacement[wheel] / motors
+            } else {
+                0.0
+            };
+            torque_nm[wheel] = (circuit_nm * share - SLIP_GAIN_NMS * beyond)
+                .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
+        }
+    }
+
+    /// Scales the torques to what the engine gives; returns the scale, 0 to 1.
+    fn limit_power(&self, input: &DriveInput, out: &mut DriveOutput) -> f64 {
+        let wanted_w: f64 = out
+            .wheel_torque_nm
+            .iter()
+            .map(|(w, nm)| nm * input.wheel_speed_rad_s[w])
+            .sum();
+        let shaft_rad_s = input.engine_speed_rpm * core::f64::consts::TAU / 60.0;
+        let most_w = self
+            .engine_power_w
+            .min(self.engine_torque_max_nm * shaft_rad_s);
+        let limit = if wanted_w > most_w {
+            most_w / wanted_w
+        } else {
+            1.0
+        };
+        out.wheel_torque_nm = out.wheel_torque_nm.map(|nm| nm * limit);
+        out.power_w = wanted_w * limit;
+        limit
+    }
+
+    /// Integrates the mean's error unless that would wind up against a limit.
+    fn integrate(
+        &self,
+        state: DriveState,
+        mean_error: f64,
+        common_nm: f64,
+        limit: f64,
+        dt_s: f64,
+    ) -> DriveState {
+        let saturated = limit < 1.0 || common_nm.abs() >= self.wheel_torque_max_nm;
+        if saturated && mean_error * common_nm > 0.0 {
+            return state;
+        }
+        let max = self.wheel_torque_max_nm;
+        let torque = state.mean_torque_nm + MEAN_INTEGRAL_NM * mean_error * dt_s;
+        DriveState {
+            mean_torque_nm: torque.clamp(-max, max),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn input(pump: f64, speed_rad_s: f64) -> DriveInput {
+        DriveInput {
+            pump_displacement: [pump; 2],
+            motor_displacement: PerWheel::splat(1.0),
+            engine_speed_rpm: 1200.0,
+            wheel_speed_rad_s: PerWheel::splat(speed_rad_s),
+        }
+    }
+
+    #[test]
+    fn full_pump_and_motor_ask_for_a_third_of_full_speed() {
+        let machine = Machine::xt28();
+        let drive = Drive::new(&machine);
+        let third = machine.drive.speed_full_m_s / machine.wheels.radius_m / 3.0;
+        let (state, out) = drive.step(DriveState::default(), &input(1.0, third), 0.005);
+        assert!(out.wheel_torque_nm.0.iter().all(|nm| nm.abs() < 1e-6));
+        assert!(state.mean_torque_nm.abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_motors_of_a_circuit_push_alike_however_fast_they_turn() {
+        let drive = Drive::new(&Machine::xt28());
+        let mut input = input(1.0, 0.5);
+        input.wheel_speed_rad_s[Wheel::Fr] = 0.6;
+        input.wheel_speed_rad_s[Wheel::Bl] = 0.4;
+        let (_, out) = drive.step(DriveState::default(), &input, 0.005);
+        assert!((out.wheel_torque_nm[Wheel::Fr] - out.wheel_torque_nm[Wheel::Ml]).abs() < 1e-9);
+        assert!((out.wheel_torque_nm[Wheel::Fr] - out.wheel_torque_nm[Wheel::Bl]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn neither_engine_nor_motors_are_overdrawn() {
+        let machine = Machine::xt28();
+        let drive = Drive::new(&machine);
+        let mut state = DriveState::default();
+        for _ in 0..2000 {
+            let (next, out) = drive.step(state, &input(1.0, 0.6), 0.005);
+            assert!(out.power_w <= machine.drive.engine_power_w + 1e-6);
+            for nm in out.wheel_torque_nm.0 {
+                assert!(nm.abs() <= machine.wheels.torque_max_nm);
+            }
+            state = next;
+        }
+    }
+}

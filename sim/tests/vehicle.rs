@@ -1,0 +1,242 @@
+//! The whole vehicle against statics, kinematics and its own blocks stepped alone.
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_sim::{
+    Actuation, Cylinder, CylinderInput, Drive, DriveInput, DriveState, Plant, Ramp, STEP, Steering,
+    SteeringInput, SteeringState, Terrain, Vehicle, VehicleState,
+};
+
+fn idle() -> Actuation {
+    Actuation::idle(1200.0)
+}
+
+/// Steps for `seconds`, calling `see` after each.
+fn run(
+    vehicle: &mut Vehicle,
+    seconds: f64,
+    mut actuation: impl FnMut(f64) -> Actuation,
+    mut see: impl FnMut(&VehicleState),
+) {
+    let steps = (seconds / STEP.as_secs_f64()).round() as usize;
+    for step in 0..steps {
+        vehicle.step(&actuation(step as f64 * STEP.as_secs_f64()));
+        see(vehicle.state());
+    }
+}
+
+fn settled(terrain: &Terrain, stroke_m: f64) -> Vehicle {
+    let mut vehicle = Vehicle::new(&Machine::xt28(), terrain, PerWheel::splat(stroke_m));
+    run(&mut vehicle, 5.0, |_| idle(), |_| ());
+    vehicle
+}
+
+#[test]
+fn the_ground_carries_the_weight() {
+    let machine = Machine::xt28();
+    let vehicle = settled(&Terrain::Flat, 0.17);
+    let weight_n = machine.mass_kg() * GRAVITY_M_S2;
+    let sum_n = vehicle.state().ground_force_n.sum();
+    assert!(
+        (sum_n / weight_n - 1.0).abs() < 1e-3,
+        "{sum_n} N of {weight_n} N"
+    );
+}
+
+#[test]
+fn cylinder_forces_follow_from_ground_forces_through_the_linkage() {
+    let machine = Machine::xt28();
+    let vehicle = settled(&Terrain::Flat, 0.17);
+    let s = vehicle.state();
+    for wheel in Wheel::ALL {
+        let pose = machine.linkage().at_stroke(s.stroke_m[wheel]);
+        // Moments about the pivot; standing wheels may push against one another, hence the width.
+        let arm_n = machine.masses.arm_kg * GRAVITY_M_S2 * machine.vehicle.arm_com_share;
+        let sprung_n = s.ground_force_n[wheel] - machine.masses.wheel_kg * GRAVITY_M_S2 - arm_n;
+        let expected_n = sprung_n / pose.force_ratio;
+        let error = s.cylinder_force_n[wheel] - expected_n;
+        assert!(
+            error.abs() < 0.05 * expected_n,
+            "{wheel}: {error:.0} N of {expected_n:.0} N"
+        );
+    }
+}
+
+#[test]
+fn a_straight_drive_rolls_without_slip_and_keeps_its_line() {
+    let machine = Machine::xt28();
+    let mut vehicle = settled(&Terrain::Flat, 0.17);
+    let start = vehicle.state().position_m;
+    let mut rolled_m = 0.0;
+    let pump = |t: f64| [(t / 2.0).min(1.0); 2];
+    run(
+        &mut vehicle,
+        12.0,
+        |t| Actuation {
+            pump_displacement: pump(t),
+            ..idle()
+        },
+        |s| rolled_m += s.wheel_speed_rad_s.mean() * machine.wheels.radius_m * STEP.as_secs_f64(),
+    );
+    let s = vehicle.state();
+    let gone_m = s.position_m[0] - start[0];
+    assert!(
+        (gone_m / rolled_m - 1.0).abs() < 5e-3,
+        "{gone_m} m of {rolled_m} m rolled"
+    );
+    assert!(s.position_m[1].abs() < 0.01, "{:?}", s.position_m);
+    let third = machine.drive.speed_full_m_s / 3.0;
+    let speed_m_s = s.wheel_speed_rad_s.mean() * machine.wheels.radius_m;
+    assert!((speed_m_s / third - 1.0).abs() < 0.01, "{speed_m_s} m/s");
+}
+
+#[test]
+fn a_turning_machine_stays_calm() {
+    let mut vehicle = settled(&Terrain::Flat, 0.17);
+    let turn = |t: f64| Actuation {
+        pump_displacement: [(t / 2.0).min(1.0); 2],
+        steer_opening: if (4.0..9.0).contains(&t) {
+            [0.3, 0.168]
+        } else {
+            [0.0; 2]
+        },
+        arm_opening: PerWheel::splat(if t > 9.0 { 0.1 } else { 0.0 }),
+        ..idle()
+    };
+    let (mut last, mut shake) = (0.0, 0.0_f64);
+    run(&mut vehicle, 15.0, turn, |s| {
+        shake = shake.max((s.front_specific_force_m_s2[1] - last).abs());
+        last = s.front_specific_force_m_s2[1];
+    });
+    assert!(
+        shake < 0.5,
+        "sideways force jumps by {shake} m/s2 between steps"
+    );
+    let s = vehicle.state();
+    assert!(
+        (s.joint_rad[0].to_degrees() - 15.0).abs() < 0.2,
+        "{:?}",
+        s.joint_rad
+    );
+    assert!(
+        (s.joint_rad[1].to_degrees() - 8.4).abs() < 0.2,
+        "{:?}",
+        s.joint_rad
+    );
+    assert!(s.yaw_rad > 0.3, "it turns left: {}", s.yaw_rad);
+}
+
+#[test]
+fn a_ramp_under_the_right_wheels_lifts_the_right_side() {
+    let ramp = Ramp {
+        x_m: [4.0, 7.0, 8.5, 11.5],
+        height_m: 0.3,
+        y_min_m: -1.9,
+        y_max_m: -0.5,
+    };
+    let mut vehicle = settled(&Terrain::ramp(&ramp), 0.17);
+    let mut roll_max = 0.0_f64;
+    let drive = |t: f64| Actuation {
+        pump_displacement: [(t / 2.0).min(1.0); 2],
+        ..idle()
+    };
+    run(&mut vehicle, 40.0, drive, |s| {
+        roll_max = roll_max.max(s.roll_rad)
+    });
+    let s = vehicle.state();
+    assert!(s.position_m[0] > 17.0, "it crossed: {:?}", s.position_m);
+    // 0.3 m over a track of 2.35 m is 7.3 degrees; the other frames stay level, so less.
+    assert!(
+        (1.5..7.3).contains(&roll_max.to_degrees()),
+        "{}",
+        roll_max.to_degrees()
+    );
+    assert!(
+        s.roll_rad.abs().to_degrees() < 0.1,
+        "level again: {}",
+        s.roll_rad.to_degrees()
+    );
+}
+
+#[test]
+fn the_brake_holds_what_the_pump_cannot_move() {
+    let mut vehicle = settled(&Terrain::Flat, 0.17);
+    let start = vehicle.state().position_m[0];
+    let braked = Actuation {
+        pump_displacement: [0.2; 2],
+        brake_released: false,
+        ..idle()
+    };
+    run(&mut vehicle, 3.0, |_| braked, |_| ());
+    assert!((vehicle.state().position_m[0] - start).abs() < 0.01);
+}
+
+#[test]
+fn twice_the_same_is_the_same_to_the_bit() {
+    let once = || {
+        let mut vehicle = settled(&Terrain::Flat, 0.1);
+        let drive = |t: f64| Actuation {
+            pump_displacement: [(t / 2.0).min(1.0); 2],
+            steer_opening: [0.1, 0.05],
+            ..idle()
+        };
+        run(&mut vehicle, 5.0, drive, |_| ());
+        *vehicle.state()
+    };
+    assert_eq!(once(), once());
+}
+
+/// Blocks alone, fed with the vehicle's own signals, must say what the vehicle said. Cylinder and
+/// joint are exact; the drive's torques too, since nothing between it and the wheels is hidden.
+#[test]
+fn blocks_alone_reproduce_the_whole() {
+    let machine = Machine::xt28();
+    let mut vehicle = Vehicle::new(&machine, &Terrain::Flat, PerWheel::splat(0.17));
+    let (cylinder, steering) = (Cylinder::new(&machine), Steering::new(&machine));
+    let drive = Drive::new(&machine);
+    let weight_n = machine.mass_kg() * GRAVITY_M_S2 / 6.0;
+    let ratio = machine.linkage().at_stroke(0.17).force_ratio;
+    let mut rest = PerWheel::splat(cylinder.settled(0.17, weight_n / ratio));
+    let (mut joints, mut shaft) = ([SteeringState::default(); 2], DriveState::default());
+    let dt_s = STEP.as_secs_f64();
+    for step in 0..2000 {
+        let t = f64::from(step) * dt_s;
+        let actuation = Actuation {
+            arm_opening: PerWheel::from_fn(|w| 0.3 * (t * (1.0 + w.index() as f64 * 0.1)).sin()),
+            steer_opening: [(t * 0.7).sin(), 0.5 * (t * 0.7).sin()],
+            pump_displacement: [(t / 4.0).min(1.0); 2],
+            ..idle()
+        };
+        let before = *vehicle.state();
+        vehicle.step(&actuation);
+        let after = vehicle.state();
+        for wheel in Wheel::ALL {
+            let at = |s: &VehicleState| CylinderInput {
+                opening: actuation.arm_opening[wheel],
+                stroke_m: s.stroke_m[wheel],
+                stroke_rate_m_s: s.stroke_rate_m_s[wheel],
+            };
+            rest[wheel] = cylinder.step(rest[wheel], &at(&before), dt_s);
+            let alone_n = cylinder.oil_force_n(rest[wheel], &at(after));
+            assert!((alone_n - after.cylinder_force_n[wheel]).abs() < 1e-6);
+        }
+        for (i, joint) in joints.iter_mut().enumerate() {
+            let input = SteeringInput {
+                opening: actuation.steer_opening[i],
+                angle_rad: before.joint_rad[i],
+            };
+            *joint = steering.step(*joint, &input, dt_s);
+            // The joint follows its rest to what the torque between them twists.
+            assert!((joint.rest_rad - after.joint_rad[i]).abs() < 0.003);
+        }
+        let input = DriveInput {
+            pump_displacement: actuation.pump_displacement,
+            motor_displacement: actuation.motor_displacement,
+            engine_speed_rpm: actuation.engine_speed_rpm,
+            wheel_speed_rad_s: before.wheel_speed_rad_s,
+        };
+        let (state, out) = drive.step(shaft, &input, dt_s);
+        shaft = state;
+        assert_eq!(out.wheel_torque_nm, after.wheel_torque_nm);
+        assert_eq!(out.pump_pressure_pa, after.pump_pressure_pa);
+    }
+}

@@ -54,6 +54,15 @@ impl RigidBodies {
     /// The machine on `terrain`, front axle at the origin heading east, arms at `stroke_m`.
     pub(crate) fn new(machine: &Machine, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
         let mut world = new_world();
+        let ground = world.colliders.insert(
+            ColliderBuilder::new(SharedShape::new(Ground(terrain.clone())))
+                .friction(machine.wheels.friction as Real)
+                .collision_groups(InteractionGroups::new(
+                    Group::GROUP_1,
+                    Group::GROUP_2,
+                    InteractionTestMode::And,
+                )),
+        );
         let frames = insert_frames(machine, &mut world);
         let joint_x = [
             machine.articulation.front_joint_x_m,
@@ -74,15 +83,6 @@ impl RigidBodies {
             (arms[wheel], wheels[wheel], wheel_colliders[wheel]) =
                 insert_arm(machine, &mut world, frame, wheel);
         }
-        let ground = world.colliders.insert(
-            ColliderBuilder::new(SharedShape::new(Ground(terrain.clone())))
-                .friction(machine.wheels.friction as Real)
-                .collision_groups(InteractionGroups::new(
-                    Group::GROUP_1,
-                    Group::GROUP_2,
-                    InteractionTestMode::And,
-                )),
-        );
         let mut bodies = Self {
             world,
             frames,

@@ -76,10 +76,7 @@ impl Linkage {
     /// The same linkage with another closed length, as the firmware's force code has it (facts 1.4).
     #[must_use]
     pub const fn with_closed_length(self, closed_length_m: f64) -> Self {
-        Self {
-            closed_length_m,
-            ..self
-        }
+        Self { closed_length_m, ..self }
     }
 
     fn length_m(&self, angle_rad: f64) -> f64 {
@@ -108,14 +105,8 @@ mod tests {
         for [stroke_mm, drop_m, reach_m, ratio] in FACTS {
             let pose = linkage.at_stroke(stroke_mm / 1000.0);
             assert!((pose.drop_m - drop_m).abs() < 6e-5, "{stroke_mm}: {pose:?}");
-            assert!(
-                (pose.reach_m - reach_m).abs() < 6e-5,
-                "{stroke_mm}: {pose:?}"
-            );
-            assert!(
-                (pose.force_ratio - ratio).abs() < 6e-5,
-                "{stroke_mm}: {pose:?}"
-            );
+            assert!((pose.reach_m - reach_m).abs() < 6e-5, "{stroke_mm}: {pose:?}");
+            assert!((pose.force_ratio - ratio).abs() < 6e-5, "{stroke_mm}: {pose:?}");
         }
     }
 

@@ -188,10 +188,8 @@ impl Machine {
     /// # Errors
     /// [`MachineError`], with the file, the line and the remedy.
     pub fn load(path: &Path) -> Result<Self, MachineError> {
-        let text = std::fs::read_to_string(path).map_err(|source| MachineError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| MachineError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
@@ -250,26 +248,15 @@ impl Machine {
             ("arms.area_bore_m2", self.arms.area_bore_m2),
             ("arms.area_rod_m2", self.arms.area_rod_m2),
             ("hydraulics.speed_full_m_s", self.hydraulics.speed_full_m_s),
-            (
-                "hydraulics.lock_stiffness_n_m",
-                self.hydraulics.lock_stiffness_n_m,
-            ),
+            ("hydraulics.lock_stiffness_n_m", self.hydraulics.lock_stiffness_n_m),
             ("drive.speed_full_m_s", self.drive.speed_full_m_s),
-            (
-                "drive.speed_time_constant_s",
-                self.drive.speed_time_constant_s,
-            ),
+            ("drive.speed_time_constant_s", self.drive.speed_time_constant_s),
             ("sensors.gnss_rate_hz", self.sensors.gnss_rate_hz),
         ];
         for (key, value) in positive {
             if !(value.is_finite() && value > 0.0) {
                 let must = "it must be finite and above zero";
-                return Err(MachineError::Range {
-                    path: path.to_owned(),
-                    key,
-                    value,
-                    must,
-                });
+                return Err(MachineError::Range { path: path.to_owned(), key, value, must });
             }
         }
         Ok(())
@@ -277,11 +264,7 @@ impl Machine {
 }
 
 fn line_of(text: &str, offset: usize) -> usize {
-    text.as_bytes()[..offset.min(text.len())]
-        .iter()
-        .filter(|&&b| b == b'\n')
-        .count()
-        + 1
+    text.as_bytes()[..offset.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1
 }
 
 #[cfg(test)]
@@ -296,14 +279,9 @@ mod tests {
     #[test]
     fn an_unknown_key_is_refused_with_its_line() {
         let text = XT28.replace("arm_kg = 200.0", "arm_lb = 441.0");
-        let error = Machine::parse(&text, Path::new("m.toml"))
-            .unwrap_err()
-            .to_string();
+        let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
         let line = text.lines().position(|l| l.starts_with("arm_lb")).unwrap() + 1;
-        assert!(
-            error.starts_with(&format!("m.toml:{line}: unknown field `arm_lb`")),
-            "{error}"
-        );
+        assert!(error.starts_with(&format!("m.toml:{line}: unknown field `arm_lb`")), "{error}");
         assert!(error.contains("arm_kg"), "{error}");
     }
 
@@ -311,9 +289,7 @@ mod tests {
     fn a_number_no_machine_can_have_is_refused() {
         for bad in ["-1.0", "0.0", "nan", "inf"] {
             let text = XT28.replace("radius_m = 0.74", &format!("radius_m = {bad}"));
-            let error = Machine::parse(&text, Path::new("m.toml"))
-                .unwrap_err()
-                .to_string();
+            let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
             assert!(error.contains("wheels.radius_m"), "{error}");
         }
     }

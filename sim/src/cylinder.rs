@@ -72,9 +72,7 @@ impl Cylinder {
     /// The state at which the cylinder carries `force_n` at rest at `stroke_m`.
     #[must_use]
     pub fn settled(&self, stroke_m: f64, force_n: f64) -> CylinderState {
-        CylinderState {
-            rest_m: stroke_m + force_n / self.stiffness_n_m,
-        }
+        CylinderState { rest_m: stroke_m + force_n / self.stiffness_n_m }
     }
 
     /// Moves the rest position by the valve's flow over `dt_s` s.
@@ -85,9 +83,7 @@ impl Cylinder {
         let opening = input.opening.clamp(-1.0, 1.0);
         let rest_m = state.rest_m + opening * self.speed_full_m_s * dt_s;
         let reach_m = self.force_max_n / self.stiffness_n_m;
-        CylinderState {
-            rest_m: rest_m.clamp(input.stroke_m - reach_m, input.stroke_m + reach_m),
-        }
+        CylinderState { rest_m: rest_m.clamp(input.stroke_m - reach_m, input.stroke_m + reach_m) }
     }
 
     /// The force at a stroke and a rate: k (rest - s) - c ds/dt, and the end stops beyond 0 and full.
@@ -139,11 +135,7 @@ mod tests {
     fn the_valve_moves_the_rest_at_its_full_speed() {
         let cylinder = Cylinder::new(&Machine::xt28());
         let mut state = cylinder.settled(0.2, 0.0);
-        let input = CylinderInput {
-            opening: 0.3,
-            stroke_m: 0.2,
-            stroke_rate_m_s: 0.0,
-        };
+        let input = CylinderInput { opening: 0.3, stroke_m: 0.2, stroke_rate_m_s: 0.0 };
         for _ in 0..20 {
             state = cylinder.step(state, &input, 0.005);
         }
@@ -186,11 +178,7 @@ mod tests {
     fn the_relief_valve_bounds_the_force() {
         let machine = Machine::xt28();
         let cylinder = Cylinder::new(&machine);
-        let input = CylinderInput {
-            opening: 1.0,
-            stroke_m: 0.5,
-            stroke_rate_m_s: 0.0,
-        };
+        let input = CylinderInput { opening: 1.0, stroke_m: 0.5, stroke_rate_m_s: 0.0 };
         let mut state = cylinder.settled(0.5, 0.0);
         for _ in 0..10_000 {
             state = cylinder.step(state, &input, 0.005);

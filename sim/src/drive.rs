@@ -116,18 +116,12 @@ impl Drive {
             out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
-        (
-            self.integrate(state, mean_error, common_nm, limit, dt_s),
-            out,
-        )
+        (self.integrate(state, mean_error, common_nm, limit, dt_s), out)
     }
 
     /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
     fn target_rad_s(&self, c: usize, input: &DriveInput) -> f64 {
-        let motors: f64 = self.circuits[c]
-            .iter()
-            .map(|&w| input.motor_displacement[w])
-            .sum();
+        let motors: f64 = self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum();
         if motors <= 0.0 {
             return 0.0;
         }
@@ -155,39 +149,26 @@ impl Drive {
         input: &DriveInput,
         torque_nm: &mut PerWheel<f64>,
     ) {
-        let motors: f64 = self.circuits[c]
-            .iter()
-            .map(|&w| input.motor_displacement[w])
-            .sum();
+        let motors: f64 = self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum();
+        if motors <= 0.0 {
+            return;
+        }
         for &wheel in &self.circuits[c] {
             let off = input.wheel_speed_rad_s[wheel] - mean_rad_s;
             let beyond = off - off.clamp(-SLIP_FREE_RAD_S, SLIP_FREE_RAD_S);
-            let share = if motors > 0.0 {
-                3.0 * input.motor_displacement[wheel] / motors
-            } else {
-                0.0
-            };
-            torque_nm[wheel] = (circuit_nm * share - SLIP_GAIN_NMS * beyond)
+            let share = 3.0 * input.motor_displacement[wheel] / motors;
+            torque_nm[wheel] = ((circuit_nm - SLIP_GAIN_NMS * beyond) * share)
                 .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
         }
     }
 
     /// Scales the torques to what the engine gives; returns the scale, 0 to 1.
     fn limit_power(&self, input: &DriveInput, out: &mut DriveOutput) -> f64 {
-        let wanted_w: f64 = out
-            .wheel_torque_nm
-            .iter()
-            .map(|(w, nm)| nm * input.wheel_speed_rad_s[w])
-            .sum();
+        let wanted_w: f64 =
+            out.wheel_torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
         let shaft_rad_s = input.engine_speed_rpm * core::f64::consts::TAU / 60.0;
-        let most_w = self
-            .engine_power_w
-            .min(self.engine_torque_max_nm * shaft_rad_s);
-        let limit = if wanted_w > most_w {
-            most_w / wanted_w
-        } else {
-            1.0
-        };
+        let most_w = self.engine_power_w.min(self.engine_torque_max_nm * shaft_rad_s);
+        let limit = if wanted_w > most_w { most_w / wanted_w } else { 1.0 };
         out.wheel_torque_nm = out.wheel_torque_nm.map(|nm| nm * limit);
         out.power_w = wanted_w * limit;
         limit
@@ -208,9 +189,7 @@ impl Drive {
         }
         let max = self.wheel_torque_max_nm;
         let torque = state.mean_torque_nm + MEAN_INTEGRAL_NM * mean_error * dt_s;
-        DriveState {
-            mean_torque_nm: torque.clamp(-max, max),
-        }
+        DriveState { mean_torque_nm: torque.clamp(-max, max) }
     }
 }
 

@@ -78,11 +78,7 @@ impl GnssReceiver {
         if let Some(noise) = &mut self.noise {
             for axis in 0..3 {
                 fix.position_m[axis] += noise.position_m.sample(&mut noise.random);
-                let velocity = if axis < 2 {
-                    noise.velocity_xy_m_s
-                } else {
-                    noise.velocity_z_m_s
-                };
+                let velocity = if axis < 2 { noise.velocity_xy_m_s } else { noise.velocity_z_m_s };
                 fix.velocity_m_s[axis] += velocity.sample(&mut noise.random);
             }
             fix.heading_rad += noise.heading_rad.sample(&mut noise.random);

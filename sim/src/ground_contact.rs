@@ -171,11 +171,8 @@ fn write_contact(
         manifold.points.clear();
         manifold.points.push(contact);
     }
-    (manifold.local_n1, manifold.local_n2) = if flipped {
-        (ball_normal, normal)
-    } else {
-        (normal, ball_normal)
-    };
+    (manifold.local_n1, manifold.local_n2) =
+        if flipped { (ball_normal, normal) } else { (normal, ball_normal) };
 }
 
 impl QueryDispatcher for GroundDispatcher {

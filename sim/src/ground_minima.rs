@@ -31,13 +31,7 @@ pub(crate) fn nearest(
     match terrain {
         Terrain::Flat => {
             let point = Vector::new(centre.x, centre.y, 0.0);
-            found.insert(
-                Nearest {
-                    point,
-                    distance_m: centre.z,
-                },
-                reach_m,
-            );
+            found.insert(Nearest { point, distance_m: centre.z }, reach_m);
         }
         Terrain::Grid(grid) => grid_minima(grid, centre, reach_m, &mut found),
     }
@@ -51,14 +45,8 @@ struct Minima {
 
 impl Default for Minima {
     fn default() -> Self {
-        let none = Nearest {
-            point: Vector::ZERO,
-            distance_m: Real::MAX,
-        };
-        Self {
-            points: [none; CONTACTS_MAX],
-            count: 0,
-        }
+        let none = Nearest { point: Vector::ZERO, distance_m: Real::MAX };
+        Self { points: [none; CONTACTS_MAX], count: 0 }
     }
 }
 
@@ -79,10 +67,8 @@ impl Minima {
         if self.count < CONTACTS_MAX {
             self.points[self.count] = new;
             self.count += 1;
-        } else if let Some(worst) = self
-            .points
-            .iter_mut()
-            .max_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
+        } else if let Some(worst) =
+            self.points.iter_mut().max_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
             && new.distance_m < worst.distance_m
         {
             *worst = new;
@@ -90,11 +76,7 @@ impl Minima {
     }
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    clippy::cast_precision_loss
-)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
 fn grid_minima(grid: &Grid, centre: Vector, reach_m: Real, found: &mut Minima) {
     let spacing = SPACING_M as Real;
     let [columns, rows] = grid.size();
@@ -109,21 +91,11 @@ fn grid_minima(grid: &Grid, centre: Vector, reach_m: Real, found: &mut Minima) {
     let beyond = |c: Real, o: Real, n: usize| c < o || c > o + (n - 1) as Real * spacing;
     if beyond(centre.x, x0, columns) || beyond(centre.y, y0, rows) {
         let point = Vector::new(centre.x, centre.y, 0.0);
-        found.insert(
-            Nearest {
-                point,
-                distance_m: centre.z,
-            },
-            reach_m,
-        );
+        found.insert(Nearest { point, distance_m: centre.z }, reach_m);
         return;
     }
     let vertex = |c: usize, r: usize| {
-        Vector::new(
-            x0 + c as Real * spacing,
-            y0 + r as Real * spacing,
-            grid.vertex_m(c, r),
-        )
+        Vector::new(x0 + c as Real * spacing, y0 + r as Real * spacing, grid.vertex_m(c, r))
     };
     let squared = |c: usize, r: usize| (vertex(c, r) - centre).length_squared();
     for r in r_low..=r_high {
@@ -148,19 +120,9 @@ fn grid_minima(grid: &Grid, centre: Vector, reach_m: Real, found: &mut Minima) {
 
 /// Nearest point on the six triangles that share grid point (`c`, `r`).
 fn refine(vertex: &impl Fn(usize, usize) -> Vector, c: usize, r: usize, centre: Vector) -> Nearest {
-    let ring = [
-        (c + 1, r),
-        (c + 1, r + 1),
-        (c, r + 1),
-        (c - 1, r),
-        (c - 1, r - 1),
-        (c, r - 1),
-    ];
+    let ring = [(c + 1, r), (c + 1, r + 1), (c, r + 1), (c - 1, r), (c - 1, r - 1), (c, r - 1)];
     let apex = vertex(c, r);
-    let mut best = Nearest {
-        point: apex,
-        distance_m: Real::MAX,
-    };
+    let mut best = Nearest { point: apex, distance_m: Real::MAX };
     for i in 0..6 {
         let (a, b) = (ring[i], ring[(i + 1) % 6]);
         let (a, b) = (vertex(a.0, a.1), vertex(b.0, b.1));

@@ -64,15 +64,11 @@ impl RigidBodies {
                 )),
         );
         let frames = insert_frames(machine, &mut world);
-        let joint_x = [
-            machine.articulation.front_joint_x_m,
-            machine.articulation.rear_joint_x_m,
-        ];
+        let joint_x = [machine.articulation.front_joint_x_m, machine.articulation.rear_joint_x_m];
         for (i, x) in joint_x.into_iter().enumerate() {
             let anchor = vector([x, 0.0, machine.wheels.radius_m]);
-            let joint = RevoluteJointBuilder::new(Vector::Z)
-                .local_anchor1(anchor)
-                .local_anchor2(anchor);
+            let joint =
+                RevoluteJointBuilder::new(Vector::Z).local_anchor1(anchor).local_anchor2(anchor);
             world.insert_multibody_joint(frames[i], frames[i + 1], joint);
         }
         let mut arms = PerWheel::splat(RigidBodyHandle::invalid());
@@ -102,16 +98,10 @@ impl RigidBodies {
 
     /// Sets the spring and damper of each articulation joint and of each arm hinge for the next step.
     pub(crate) fn set_springs(&mut self, joints: [HingeSpring; 2], arms: PerWheel<HingeSpring>) {
-        let joints = joints.map(|spring| HingeSpring {
-            rest_rad: -spring.rest_rad,
-            ..spring
-        });
+        let joints = joints.map(|spring| HingeSpring { rest_rad: -spring.rest_rad, ..spring });
         let (joint_hinges, arm_hinges) = (self.joints, self.arm_hinges);
         let multibody = self.multibody_mut();
-        let springs = joint_hinges
-            .iter()
-            .zip(&joints)
-            .chain(arm_hinges.0.iter().zip(&arms.0));
+        let springs = joint_hinges.iter().zip(&joints).chain(arm_hinges.0.iter().zip(&arms.0));
         for (hinge, spring) in springs {
             set_spring(multibody, *hinge, spring);
         }
@@ -153,10 +143,7 @@ impl RigidBodies {
     pub(crate) fn joint_motion(&self) -> [HingeMotion; 2] {
         self.joints.map(|hinge| {
             let motion = self.motion(hinge);
-            HingeMotion {
-                angle_rad: -motion.angle_rad,
-                rate_rad_s: -motion.rate_rad_s,
-            }
+            HingeMotion { angle_rad: -motion.angle_rad, rate_rad_s: -motion.rate_rad_s }
         })
     }
 
@@ -176,19 +163,11 @@ impl RigidBodies {
             let Some(pair) = self.world.narrow_phase.contact_pair(self.ground, collider) else {
                 return 0.0;
             };
-            let up = if pair.collider1 == self.ground {
-                1.0
-            } else {
-                -1.0
-            };
+            let up = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
             let impulse: f64 = pair
                 .manifolds()
                 .iter()
-                .flat_map(|m| {
-                    m.points
-                        .iter()
-                        .map(move |p| (m.data.normal.z, p.data.impulse))
-                })
+                .flat_map(|m| m.points.iter().map(move |p| (m.data.normal.z, p.data.impulse)))
                 .map(|(normal_z, impulse)| f64::from(normal_z) * up * f64::from(impulse))
                 .sum();
             impulse / dt_s
@@ -197,9 +176,7 @@ impl RigidBodies {
 
     fn motion(&self, hinge: Hinge) -> HingeMotion {
         let multibody = self.multibody();
-        let angle = multibody
-            .link(hinge.link)
-            .map_or(0.0, |link| link.joint().coords()[HINGE]);
+        let angle = multibody.link(hinge.link).map_or(0.0, |link| link.joint().coords()[HINGE]);
         HingeMotion {
             angle_rad: f64::from(angle),
             rate_rad_s: f64::from(multibody.generalized_velocity()[hinge.dof]),
@@ -216,9 +193,7 @@ impl RigidBodies {
 
     fn multibody_mut(&mut self) -> &mut Multibody {
         let joints = &mut self.world.multibody_joints;
-        let index = joints
-            .rigid_body_link(self.frames[0])
-            .map(|link| link.multibody);
+        let index = joints.rigid_body_link(self.frames[0]).map(|link| link.multibody);
         index
             .and_then(|index| joints.get_multibody_mut(index))
             .expect("the vehicle is one multibody")
@@ -227,16 +202,10 @@ impl RigidBodies {
     /// Looks up where each hinge sits.
     fn index_hinges(&mut self) {
         let find = |body: RigidBodyHandle| {
-            let id = self
-                .world
-                .multibody_joints
-                .rigid_body_link(body)
-                .expect("every part is linked");
+            let id =
+                self.world.multibody_joints.rigid_body_link(body).expect("every part is linked");
             let link = self.multibody().link(id.id).expect("the link is there");
-            Hinge {
-                link: id.id,
-                dof: link.assembly_id(),
-            }
+            Hinge { link: id.id, dof: link.assembly_id() }
         };
         let joints = [find(self.frames[1]), find(self.frames[2])];
         let (arms, wheels) = (self.arms.map(find), self.wheels.map(find));
@@ -246,10 +215,7 @@ impl RigidBodies {
     /// Takes the root's freedoms from its body; clears the engine's default joint damping.
     fn free_root(&mut self) {
         let world = &mut self.world;
-        let link = world
-            .multibody_joints
-            .rigid_body_link(self.frames[0])
-            .map(|l| l.multibody);
+        let link = world.multibody_joints.rigid_body_link(self.frames[0]).map(|l| l.multibody);
         let multibody = link
             .and_then(|index| world.multibody_joints.get_multibody_mut(index))
             .expect("the vehicle is one multibody");
@@ -272,10 +238,7 @@ impl RigidBodies {
         }
         move_by[2] = lift_m as Real;
         let world = &mut self.world;
-        let link = world
-            .multibody_joints
-            .rigid_body_link(self.frames[0])
-            .map(|l| l.multibody);
+        let link = world.multibody_joints.rigid_body_link(self.frames[0]).map(|l| l.multibody);
         let multibody = link
             .and_then(|index| world.multibody_joints.get_multibody_mut(index))
             .expect("the vehicle is one multibody");
@@ -289,7 +252,6 @@ impl RigidBodies {
 fn set_spring(multibody: &mut Multibody, hinge: Hinge, spring: &HingeSpring) {
     multibody.damping_mut()[hinge.dof] = spring.damping_nms as Real;
     if let Some(link) = multibody.link_mut(hinge.link) {
-        link.joint
-            .set_spring(HINGE, spring.stiffness_nm as Real, spring.rest_rad as Real);
+        link.joint.set_spring(HINGE, spring.stiffness_nm as Real, spring.rest_rad as Real);
     }
 }

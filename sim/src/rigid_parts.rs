@@ -19,11 +19,7 @@ pub(crate) fn vector(v: [f64; 3]) -> Vector {
 /// +1 where an arm points forward: its hinge angle about +y then grows with the stroke.
 pub(crate) fn arm_sign(machine: &Machine, wheel: Wheel) -> f64 {
     let front = machine.arms.front_arms_point == Pointing::Forward;
-    if (wheel.axle() == Axle::Front) == front {
-        1.0
-    } else {
-        -1.0
-    }
+    if (wheel.axle() == Axle::Front) == front { 1.0 } else { -1.0 }
 }
 
 /// A world without sleep, clustering or continuous collision: wheels roll slowly on known ground.
@@ -65,11 +61,7 @@ pub(crate) fn insert_arm(
     wheel: Wheel,
 ) -> (RigidBodyHandle, RigidBodyHandle, ColliderHandle) {
     let reference = machine.linkage().at_stroke(REFERENCE_STROKE_M);
-    let side = if wheel.side() == Side::Left {
-        1.0
-    } else {
-        -1.0
-    };
+    let side = if wheel.side() == Side::Left { 1.0 } else { -1.0 };
     let forward = arm_sign(machine, wheel);
     let v = &machine.vehicle;
     let to_wheel = [
@@ -97,9 +89,7 @@ pub(crate) fn insert_arm(
     let wheel_kg = machine.masses.wheel_kg;
     let about_axle = wheel_kg * v.wheel_gyration_m * v.wheel_gyration_m;
     let across = 0.6 * about_axle;
-    let rim = world
-        .bodies
-        .insert(body(wheel_kg, [0.0; 3], [across, about_axle, across]));
+    let rim = world.bodies.insert(body(wheel_kg, [0.0; 3], [across, about_axle, across]));
     world.insert_multibody_joint(arm, rim, axle(to_wheel, [0.0; 3]));
     #[allow(clippy::cast_possible_truncation)]
     let ball = ColliderBuilder::ball(machine.wheels.radius_m as Real)
@@ -118,21 +108,15 @@ pub(crate) fn insert_arm(
 
 #[allow(clippy::cast_possible_truncation)]
 fn body(mass_kg: f64, com_m: [f64; 3], inertia_kg_m2: [f64; 3]) -> RigidBodyBuilder {
-    RigidBodyBuilder::dynamic()
-        .can_sleep(false)
-        .additional_mass_properties(MassProperties::new(
-            vector(com_m),
-            mass_kg as Real,
-            vector(inertia_kg_m2),
-        ))
+    RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(MassProperties::new(
+        vector(com_m),
+        mass_kg as Real,
+        vector(inertia_kg_m2),
+    ))
 }
 
 /// Principal inertias of a solid box, kg m².
 fn box_inertia(mass_kg: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
     let m = mass_kg / 12.0;
-    [
-        m * (y * y + z * z),
-        m * (x * x + z * z),
-        m * (x * x + y * y),
-    ]
+    [m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y)]
 }

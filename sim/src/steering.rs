@@ -78,18 +78,12 @@ mod tests {
         let steering = Steering::new(&Machine::xt28());
         let mut state = SteeringState::default();
         for _ in 0..200 {
-            let input = SteeringInput {
-                opening: 1.0,
-                angle_rad: state.rest_rad,
-            };
+            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad };
             state = steering.step(state, &input, 0.005);
         }
         assert!((state.rest_rad.to_degrees() - 10.0).abs() < 1e-9);
         for _ in 0..1000 {
-            let input = SteeringInput {
-                opening: 1.0,
-                angle_rad: state.rest_rad,
-            };
+            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad };
             state = steering.step(state, &input, 0.005);
         }
         assert!((state.rest_rad.to_degrees() - 25.0).abs() < 1e-9);
@@ -101,14 +95,7 @@ mod tests {
         let steering = Steering::new(&machine);
         let mut state = SteeringState::default();
         for _ in 0..1000 {
-            state = steering.step(
-                state,
-                &SteeringInput {
-                    opening: 1.0,
-                    angle_rad: 0.0,
-                },
-                0.005,
-            );
+            state = steering.step(state, &SteeringInput { opening: 1.0, angle_rad: 0.0 }, 0.005);
         }
         let torque_nm = state.rest_rad * steering.stiffness_nm();
         assert!((torque_nm - machine.articulation.torque_max_nm).abs() < 1e-6);

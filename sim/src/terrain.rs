@@ -67,11 +67,9 @@ impl Terrain {
     #[must_use]
     pub fn ramp(ramp: &Ramp) -> Self {
         let half_m = 20.0;
-        Self::Grid(Arc::new(Grid::from_fn(
-            [-BEHIND_M, -half_m],
-            [AHEAD_M, half_m],
-            |x, y| ramp.height_m(x, y),
-        )))
+        Self::Grid(Arc::new(Grid::from_fn([-BEHIND_M, -half_m], [AHEAD_M, half_m], |x, y| {
+            ramp.height_m(x, y)
+        })))
     }
 
     /// Height at a point, m.
@@ -87,11 +85,7 @@ impl Terrain {
 impl Grid {
     /// A grid over a rectangle, sampled from a function.
     #[must_use]
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss
-    )]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
     pub fn from_fn(from_m: [f64; 2], to_m: [f64; 2], height_m: impl Fn(f64, f64) -> f64) -> Self {
         let count = |axis: usize| ((to_m[axis] - from_m[axis]) / SPACING_M).round() as usize + 1;
         let (columns, rows) = (count(0), count(1));
@@ -103,12 +97,7 @@ impl Grid {
                 heights.push(height_m(x, y) as f32);
             }
         }
-        Self {
-            origin_m: from_m,
-            columns,
-            rows,
-            height_m: heights,
-        }
+        Self { origin_m: from_m, columns, rows, height_m: heights }
     }
 
     /// Number of grid points along x and along y.
@@ -157,12 +146,7 @@ mod tests {
     use super::*;
 
     fn field_ramp() -> Ramp {
-        Ramp {
-            x_m: [4.0, 7.0, 8.5, 11.5],
-            height_m: 0.3,
-            y_min_m: -1.9,
-            y_max_m: -0.5,
-        }
+        Ramp { x_m: [4.0, 7.0, 8.5, 11.5], height_m: 0.3, y_min_m: -1.9, y_max_m: -0.5 }
     }
 
     #[test]

@@ -35,12 +35,7 @@ pub enum TerrainError {
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 enum TerrainFile {
     Flat,
-    Ramp {
-        x_m: [f64; 4],
-        height_m: f64,
-        y_min_m: f64,
-        y_max_m: f64,
-    },
+    Ramp { x_m: [f64; 4], height_m: f64, y_min_m: f64, y_max_m: f64 },
 }
 
 impl Terrain {
@@ -49,10 +44,8 @@ impl Terrain {
     /// # Errors
     /// [`TerrainError`], with file, line and remedy.
     pub fn load(path: &Path) -> Result<Self, TerrainError> {
-        let text = std::fs::read_to_string(path).map_err(|source| TerrainError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| TerrainError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
@@ -61,36 +54,17 @@ impl Terrain {
     /// # Errors
     /// [`TerrainError::Parse`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, TerrainError> {
-        let refuse = |line, problem| TerrainError::Parse {
-            path: path.to_owned(),
-            line,
-            problem,
-        };
+        let refuse = |line, problem| TerrainError::Parse { path: path.to_owned(), line, problem };
         let file: TerrainFile = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start.min(text.len()));
-            let line = text.as_bytes()[..start]
-                .iter()
-                .filter(|&&b| b == b'\n')
-                .count()
-                + 1;
+            let line = text.as_bytes()[..start].iter().filter(|&&b| b == b'\n').count() + 1;
             refuse(line, error.message().replace('\n', " "))
         })?;
         match file {
             TerrainFile::Flat => Ok(Self::Flat),
-            TerrainFile::Ramp {
-                x_m,
-                height_m,
-                y_min_m,
-                y_max_m,
-            } => {
-                let ramp = Ramp {
-                    x_m,
-                    height_m,
-                    y_min_m,
-                    y_max_m,
-                };
-                ramp.check()
-                    .map_err(|problem| refuse(1, problem.to_owned()))?;
+            TerrainFile::Ramp { x_m, height_m, y_min_m, y_max_m } => {
+                let ramp = Ramp { x_m, height_m, y_min_m, y_max_m };
+                ramp.check().map_err(|problem| refuse(1, problem.to_owned()))?;
                 Ok(Self::ramp(&ramp))
             }
         }
@@ -131,17 +105,10 @@ mod tests {
         let ramp = "kind = \"ramp\"\nx_m = [4, 7, 8.5, 11.5]\nheight_m = 0.3\ny_min_m = -1.9\ny_max_m = -0.5\n";
         assert!((parse(ramp).unwrap().height_m(8.0, -1.0) - 0.3).abs() < 1e-6);
         let error = parse("kind = \"swamp\"\n").unwrap_err().to_string();
-        assert!(
-            error.starts_with("t.toml:1: unknown variant `swamp`"),
-            "{error}"
-        );
-        let error = parse(&ramp.replace("7, 8.5", "9, 8.5"))
-            .unwrap_err()
-            .to_string();
+        assert!(error.starts_with("t.toml:1: unknown variant `swamp`"), "{error}");
+        let error = parse(&ramp.replace("7, 8.5", "9, 8.5")).unwrap_err().to_string();
         assert!(error.contains("x_m must grow"), "{error}");
-        let error = parse(&ramp.replace("height_m", "height_mm"))
-            .unwrap_err()
-            .to_string();
+        let error = parse(&ramp.replace("height_m", "height_mm")).unwrap_err().to_string();
         assert!(error.contains("height_mm"), "{error}");
     }
 }

@@ -92,14 +92,9 @@ impl Vehicle {
                 stroke_m: linkage.stroke_m(angle_rad),
                 stroke_rate_m_s: sign * motion[wheel].rate_rad_s * lever_m,
             };
-            let state = self
-                .cylinder
-                .step(self.memory.cylinders[wheel], &input, dt_s);
+            let state = self.cylinder.step(self.memory.cylinders[wheel], &input, dt_s);
             self.memory.cylinders[wheel] = state;
-            let still = CylinderInput {
-                stroke_rate_m_s: 0.0,
-                ..input
-            };
+            let still = CylinderInput { stroke_rate_m_s: 0.0, ..input };
             let force = self.cylinder.force(state, &still);
             // The cylinder's law about the hinge, linearised at this angle.
             let stiffness_nm = force.stiffness_n_m * lever_m * lever_m;
@@ -154,11 +149,7 @@ impl Vehicle {
         self.state.engine_speed_rpm = actuation.engine_speed_rpm;
         if self.memory.brake_released != actuation.brake_released {
             self.memory.brake_released = actuation.brake_released;
-            let torque_nm = if actuation.brake_released {
-                0.0
-            } else {
-                BRAKE_TORQUE_NM
-            };
+            let torque_nm = if actuation.brake_released { 0.0 } else { BRAKE_TORQUE_NM };
             self.bodies.set_brakes(torque_nm);
         }
     }
@@ -179,19 +170,14 @@ impl Vehicle {
         let motion = self.bodies.arm_motion();
         for wheel in Wheel::ALL {
             let sign = arm_sign(&self.machine, wheel);
-            let HingeMotion {
-                angle_rad,
-                rate_rad_s,
-            } = motion[wheel];
+            let HingeMotion { angle_rad, rate_rad_s } = motion[wheel];
             let angle_rad = reference_rad + sign * angle_rad;
             let input = CylinderInput {
                 opening: 0.0,
                 stroke_m: linkage.stroke_m(angle_rad),
                 stroke_rate_m_s: sign * rate_rad_s * linkage.lever_m(angle_rad),
             };
-            let force_n = self
-                .cylinder
-                .oil_force_n(self.memory.cylinders[wheel], &input);
+            let force_n = self.cylinder.oil_force_n(self.memory.cylinders[wheel], &input);
             let [a, b] = self.cylinder.pressures_pa(force_n);
             let s = &mut self.state;
             s.stroke_m[wheel] = input.stroke_m;

@@ -36,10 +36,7 @@ fn the_ground_carries_the_weight() {
     let vehicle = settled(&Terrain::Flat, 0.17);
     let weight_n = machine.mass_kg() * GRAVITY_M_S2;
     let sum_n = vehicle.state().ground_force_n.sum();
-    assert!(
-        (sum_n / weight_n - 1.0).abs() < 1e-3,
-        "{sum_n} N of {weight_n} N"
-    );
+    assert!((sum_n / weight_n - 1.0).abs() < 1e-3, "{sum_n} N of {weight_n} N");
 }
 
 #[test]
@@ -54,10 +51,7 @@ fn cylinder_forces_follow_from_ground_forces_through_the_linkage() {
         let sprung_n = s.ground_force_n[wheel] - machine.masses.wheel_kg * GRAVITY_M_S2 - arm_n;
         let expected_n = sprung_n / pose.force_ratio;
         let error = s.cylinder_force_n[wheel] - expected_n;
-        assert!(
-            error.abs() < 0.05 * expected_n,
-            "{wheel}: {error:.0} N of {expected_n:.0} N"
-        );
+        assert!(error.abs() < 0.05 * expected_n, "{wheel}: {error:.0} N of {expected_n:.0} N");
     }
 }
 
@@ -71,18 +65,12 @@ fn a_straight_drive_rolls_without_slip_and_keeps_its_line() {
     run(
         &mut vehicle,
         12.0,
-        |t| Actuation {
-            pump_displacement: pump(t),
-            ..idle()
-        },
+        |t| Actuation { pump_displacement: pump(t), ..idle() },
         |s| rolled_m += s.wheel_speed_rad_s.mean() * machine.wheels.radius_m * STEP.as_secs_f64(),
     );
     let s = vehicle.state();
     let gone_m = s.position_m[0] - start[0];
-    assert!(
-        (gone_m / rolled_m - 1.0).abs() < 5e-3,
-        "{gone_m} m of {rolled_m} m rolled"
-    );
+    assert!((gone_m / rolled_m - 1.0).abs() < 5e-3, "{gone_m} m of {rolled_m} m rolled");
     assert!(s.position_m[1].abs() < 0.01, "{:?}", s.position_m);
     let third = machine.drive.speed_full_m_s / 3.0;
     let speed_m_s = s.wheel_speed_rad_s.mean() * machine.wheels.radius_m;
@@ -94,11 +82,7 @@ fn a_turning_machine_stays_calm() {
     let mut vehicle = settled(&Terrain::Flat, 0.17);
     let turn = |t: f64| Actuation {
         pump_displacement: [(t / 2.0).min(1.0); 2],
-        steer_opening: if (4.0..9.0).contains(&t) {
-            [0.3, 0.168]
-        } else {
-            [0.0; 2]
-        },
+        steer_opening: if (4.0..9.0).contains(&t) { [0.3, 0.168] } else { [0.0; 2] },
         arm_opening: PerWheel::splat(if t > 9.0 { 0.1 } else { 0.0 }),
         ..idle()
     };
@@ -107,65 +91,32 @@ fn a_turning_machine_stays_calm() {
         shake = shake.max((s.front_specific_force_m_s2[1] - last).abs());
         last = s.front_specific_force_m_s2[1];
     });
-    assert!(
-        shake < 0.5,
-        "sideways force jumps by {shake} m/s2 between steps"
-    );
+    assert!(shake < 0.5, "sideways force jumps by {shake} m/s2 between steps");
     let s = vehicle.state();
-    assert!(
-        (s.joint_rad[0].to_degrees() - 15.0).abs() < 0.2,
-        "{:?}",
-        s.joint_rad
-    );
-    assert!(
-        (s.joint_rad[1].to_degrees() - 8.4).abs() < 0.2,
-        "{:?}",
-        s.joint_rad
-    );
+    assert!((s.joint_rad[0].to_degrees() - 15.0).abs() < 0.2, "{:?}", s.joint_rad);
+    assert!((s.joint_rad[1].to_degrees() - 8.4).abs() < 0.2, "{:?}", s.joint_rad);
     assert!(s.yaw_rad > 0.3, "it turns left: {}", s.yaw_rad);
 }
 
 #[test]
 fn a_ramp_under_the_right_wheels_lifts_the_right_side() {
-    let ramp = Ramp {
-        x_m: [4.0, 7.0, 8.5, 11.5],
-        height_m: 0.3,
-        y_min_m: -1.9,
-        y_max_m: -0.5,
-    };
+    let ramp = Ramp { x_m: [4.0, 7.0, 8.5, 11.5], height_m: 0.3, y_min_m: -1.9, y_max_m: -0.5 };
     let mut vehicle = settled(&Terrain::ramp(&ramp), 0.17);
     let mut roll_max = 0.0_f64;
-    let drive = |t: f64| Actuation {
-        pump_displacement: [(t / 2.0).min(1.0); 2],
-        ..idle()
-    };
-    run(&mut vehicle, 40.0, drive, |s| {
-        roll_max = roll_max.max(s.roll_rad)
-    });
+    let drive = |t: f64| Actuation { pump_displacement: [(t / 2.0).min(1.0); 2], ..idle() };
+    run(&mut vehicle, 40.0, drive, |s| roll_max = roll_max.max(s.roll_rad));
     let s = vehicle.state();
     assert!(s.position_m[0] > 17.0, "it crossed: {:?}", s.position_m);
     // 0.3 m over a track of 2.35 m is 7.3 degrees; the other frames stay level, so less.
-    assert!(
-        (1.5..7.3).contains(&roll_max.to_degrees()),
-        "{}",
-        roll_max.to_degrees()
-    );
-    assert!(
-        s.roll_rad.abs().to_degrees() < 0.1,
-        "level again: {}",
-        s.roll_rad.to_degrees()
-    );
+    assert!((1.5..7.3).contains(&roll_max.to_degrees()), "{}", roll_max.to_degrees());
+    assert!(s.roll_rad.abs().to_degrees() < 0.1, "level again: {}", s.roll_rad.to_degrees());
 }
 
 #[test]
 fn the_brake_holds_what_the_pump_cannot_move() {
     let mut vehicle = settled(&Terrain::Flat, 0.17);
     let start = vehicle.state().position_m[0];
-    let braked = Actuation {
-        pump_displacement: [0.2; 2],
-        brake_released: false,
-        ..idle()
-    };
+    let braked = Actuation { pump_displacement: [0.2; 2], brake_released: false, ..idle() };
     run(&mut vehicle, 3.0, |_| braked, |_| ());
     assert!((vehicle.state().position_m[0] - start).abs() < 0.01);
 }

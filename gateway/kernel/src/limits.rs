@@ -1,0 +1,150 @@
+//! The numbers the kernel holds everything to.
+
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+const MILLISECOND_NS: u64 = 1_000_000;
+
+/// How many periods of a stream may pass without news.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Deadline {
+    /// The stream's period, ns.
+    pub period_ns: u64,
+    /// Periods until it counts as lost.
+    pub periods: u32,
+}
+
+impl Deadline {
+    /// The longest silence, ns.
+    #[must_use]
+    pub const fn span_ns(self) -> u64 {
+        self.period_ns.saturating_mul(self.periods as u64)
+    }
+
+    /// True unless `at_ns` is known, not in the future and young enough.
+    #[must_use]
+    pub const fn missed(self, at_ns: Option<u64>, now_ns: u64) -> bool {
+        match at_ns {
+            // A stamp from the future would never grow old, so it counts as none.
+            Some(at) if at <= now_ns => now_ns - at > self.span_ns(),
+            _ => true,
+        }
+    }
+}
+
+/// Limits of what may be commanded. [`Limits::XT28`] has the values and where they come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Strokes are commanded within 0 and this, m.
+    pub stroke_max_m: f64,
+    /// A target stroke moves no faster than this, m/s.
+    pub stroke_rate_m_s: f64,
+    /// A target stroke stays this close to the measured one, m.
+    pub stroke_error_m: f64,
+    /// Valve openings stay within plus and minus this, share of full.
+    pub opening_max: f64,
+    /// Throttle stays within plus and minus this, share of full.
+    pub throttle_max: f64,
+    /// Throttle grows in magnitude no faster than this, 1/s. Letting go is free.
+    pub throttle_rate_s: f64,
+    /// The front joint's target stays within plus and minus this, rad.
+    pub angle_max_rad: f64,
+    /// The front joint's target moves no faster than this, rad/s.
+    pub angle_rate_rad_s: f64,
+    /// The front joint's target stays this close to the measured angle, rad.
+    pub angle_error_rad: f64,
+    /// More roll than this, either way, blocks, rad.
+    pub roll_max_rad: f64,
+    /// More pitch than this, either way, blocks, rad.
+    pub pitch_max_rad: f64,
+    /// Silence allowed to each ECU's status frame.
+    pub status: Deadline,
+    /// Silence allowed to the sensors that the limits lean on (strokes, attitude, joints).
+    pub sensors: Deadline,
+    /// Age allowed to the observation the policy acted on.
+    pub observation: Deadline,
+    /// Age allowed to the policy's last answer.
+    pub policy: Deadline,
+    /// Time without an acknowledgement in step, from either ECU.
+    pub acknowledgement: Deadline,
+    /// Acknowledged steps in a row before arming.
+    pub handshake_steps: u32,
+    /// Longest handshake, ns.
+    pub handshake_max_ns: u64,
+    /// An ECU is in step while the counter it accepted is at most this far behind the one sent.
+    pub counter_lag_max: u8,
+    /// The alive counters count modulo this.
+    pub counter_modulus: u8,
+    /// Longest time a rate limit is given credit for, ns: a late step must not become a leap.
+    pub step_max_ns: u64,
+}
+
+impl Limits {
+    /// The Xt28 under a policy that acts at 8 Hz.
+    ///
+    /// From the paper (section 4): strokes 0 to 0.25 m, 30 % of full arm speed. The ECU clips the
+    /// arm speed; a position target may lead the arm by 0.10 m, just above the 75 mm at which that
+    /// clip is reached, so the limit softens steps without slowing the arm.
+    /// From the firmware facts: joints within 25 degrees. All else assumed: roll 18 degrees, above
+    /// the 14 the paper's machine met with locked arms on its ramp and about half of what tips a
+    /// track of 2.35 m with the mass at 1.6 m; pitch 25 degrees; a joint target may lead by 25
+    /// degrees (5/8 of the opening of the steering valve); silences of ten status or sensor periods
+    /// and three fixes.
+    pub const XT28: Self = Self {
+        stroke_max_m: 0.25,
+        stroke_rate_m_s: 0.20,
+        stroke_error_m: 0.10,
+        opening_max: 0.30,
+        throttle_max: 1.0,
+        throttle_rate_s: 1.0,
+        angle_max_rad: 25.0 * DEGREE,
+        angle_rate_rad_s: 30.0 * DEGREE,
+        angle_error_rad: 25.0 * DEGREE,
+        roll_max_rad: 18.0 * DEGREE,
+        pitch_max_rad: 25.0 * DEGREE,
+        status: Deadline {
+            period_ns: 10 * MILLISECOND_NS,
+            periods: 10,
+        },
+        sensors: Deadline {
+            period_ns: 10 * MILLISECOND_NS,
+            periods: 10,
+        },
+        observation: Deadline {
+            period_ns: 125 * MILLISECOND_NS,
+            periods: 3,
+        },
+        policy: Deadline {
+            period_ns: 125 * MILLISECOND_NS,
+            periods: 3,
+        },
+        acknowledgement: Deadline {
+            period_ns: 10 * MILLISECOND_NS,
+            periods: 10,
+        },
+        handshake_steps: 10,
+        handshake_max_ns: 5_000 * MILLISECOND_NS,
+        counter_lag_max: 3,
+        counter_modulus: 15,
+        step_max_ns: 30 * MILLISECOND_NS,
+    };
+
+    /// True when every number can be held to: finite, none negative, the counter's range not empty.
+    #[must_use]
+    pub fn are_sound(&self) -> bool {
+        let floats = [
+            self.stroke_max_m,
+            self.stroke_rate_m_s,
+            self.stroke_error_m,
+            self.opening_max,
+            self.throttle_max,
+            self.throttle_rate_s,
+            self.angle_max_rad,
+            self.angle_rate_rad_s,
+            self.angle_error_rad,
+            self.roll_max_rad,
+            self.pitch_max_rad,
+        ];
+        // With a lag as large as the range, a dead ECU would look alive.
+        floats.iter().all(|x| x.is_finite() && *x >= 0.0)
+            && self.counter_lag_max < self.counter_modulus.saturating_sub(1)
+    }
+}

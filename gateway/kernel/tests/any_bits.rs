@@ -1,0 +1,205 @@
+//! Whatever the bits: nothing outside the limits leaves, and nothing at all unless armed.
+
+mod bench;
+
+use bench::{Bench, LIMITS, TICK_NS};
+use proptest::prelude::*;
+use xt28_safety::{
+    Arms, Command, Deadline, Input, Limits, Link, Measured, Order, Stamps, State, Verdict, step,
+};
+
+/// Any bit pattern, with the awkward ones often.
+fn bits() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        3 => -1.5..1.5_f64,
+        2 => any::<u64>().prop_map(f64::from_bits),
+        1 => any::<u32>().prop_map(|b| f64::from(f32::from_bits(b))),
+        1 => Just(f64::NAN),
+        1 => Just(f64::INFINITY),
+        1 => Just(-f64::MAX),
+        1 => Just(-0.0),
+    ]
+}
+
+/// Finite, over the whole exponent range: passes the finiteness check and meets the limits.
+fn finite() -> impl Strategy<Value = f64> {
+    prop_oneof![2 => -1.5..1.5_f64, 1 => bits().prop_map(|x| if x.is_finite() { x } else { 0.3 })]
+}
+
+fn command(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Command> {
+    let arms = prop_oneof![
+        Just(Arms::Off),
+        Just(Arms::Automatic),
+        proptest::array::uniform6(proptest::option::of(number.clone())).prop_map(Arms::Position),
+        proptest::array::uniform6(number.clone()).prop_map(Arms::Valve),
+    ];
+    (number.clone(), number, arms, any::<bool>()).prop_map(
+        |(throttle, front_angle_rad, arms, brake)| Command {
+            throttle,
+            front_angle_rad,
+            arms,
+            brake,
+        },
+    )
+}
+
+fn order() -> impl Strategy<Value = Order> {
+    prop_oneof![
+        Just(Order::None),
+        Just(Order::Arm),
+        Just(Order::Disarm),
+        Just(Order::EmergencyStop),
+        Just(Order::Release),
+    ]
+}
+
+fn measured() -> impl Strategy<Value = Measured> {
+    (proptest::array::uniform6(bits()), bits(), bits(), bits()).prop_map(
+        |(stroke_m, front_angle_rad, roll_rad, pitch_rad)| Measured {
+            stroke_m,
+            front_angle_rad,
+            roll_rad,
+            pitch_rad,
+        },
+    )
+}
+
+fn link() -> impl Strategy<Value = Link> {
+    (
+        any::<Option<u64>>(),
+        any::<bool>(),
+        any::<Option<u8>>(),
+        any::<u8>(),
+    )
+        .prop_map(|(heard_at_ns, ready, sent, accepted)| Link {
+            heard_at_ns,
+            ready,
+            sent,
+            accepted,
+        })
+}
+
+prop_compose! {
+    fn any_input()(
+        order in order(), request in proptest::option::of(command(bits().boxed())),
+        measured in measured(), arm in link(), drive in link(),
+        stamps in any::<[Option<u64>; 3]>(), bus_ok in any::<bool>(),
+    ) -> Input {
+        let [sensors_ns, observation_ns, policy_ns] = stamps;
+        Input { order, request, measured, arm, drive, bus_ok,
+            stamps: Stamps { sensors_ns, observation_ns, policy_ns } }
+    }
+}
+
+fn assert_within(limits: &Limits, command: &Command) {
+    assert!(command.is_finite(), "{command:?}");
+    assert!(command.throttle.abs() <= limits.throttle_max);
+    assert!(!command.brake || command.throttle == 0.0);
+    assert!(command.front_angle_rad.abs() <= limits.angle_max_rad);
+    match command.arms {
+        Arms::Off | Arms::Automatic => {}
+        Arms::Position(s) => {
+            assert!(
+                s.iter()
+                    .flatten()
+                    .all(|s| (0.0..=limits.stroke_max_m).contains(s)),
+                "{s:?}"
+            );
+        }
+        Arms::Valve(o) => assert!(o.iter().all(|o| o.abs() <= limits.opening_max), "{o:?}"),
+    }
+}
+
+fn check(limits: &Limits, state: State, verdict: &Verdict) {
+    match verdict.command() {
+        Some(command) => {
+            assert!(
+                state.is_armed(),
+                "a command left a kernel that is not armed"
+            );
+            assert_within(limits, &command);
+        }
+        None => assert!(!state.is_armed(), "armed yet blocked"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn any_sequence_of_any_inputs_is_answered_within_the_limits(
+        inputs in proptest::collection::vec((any_input(), any::<u64>()), 1..20),
+    ) {
+        let mut state = State::new();
+        for (input, now_ns) in inputs {
+            let (next, verdict) = step(&LIMITS, state, &input, now_ns);
+            check(&LIMITS, next, &verdict);
+            state = next;
+        }
+    }
+
+    #[test]
+    fn an_armed_kernel_lets_nothing_outside_the_limits_through(
+        requests in proptest::collection::vec((command(finite().boxed()), 0..100_000_000_u64), 1..40),
+        stroke_m in proptest::array::uniform6(finite()), front_angle_rad in finite(),
+    ) {
+        let mut bench = Bench::armed();
+        bench.measured.stroke_m = stroke_m;
+        bench.measured.front_angle_rad = front_angle_rad;
+        for (request, late_ns) in requests {
+            bench.now_ns += late_ns;
+            let verdict = bench.run(Order::None, request);
+            check(&LIMITS, bench.state, &verdict);
+        }
+    }
+
+    #[test]
+    fn rates_hold_whatever_is_asked(
+        requests in proptest::collection::vec(command(finite().boxed()), 2..60),
+    ) {
+        let mut bench = Bench::armed();
+        let mut before: Option<Command> = None;
+        for request in requests {
+            let Some(now) = bench.run(Order::None, request).command() else { break };
+            if let Some(before) = before {
+                let dt_s = 1e-9 * TICK_NS as f64;
+                let turned = (now.front_angle_rad - before.front_angle_rad).abs();
+                prop_assert!(turned <= LIMITS.angle_rate_rad_s * dt_s + 1e-12);
+                let grown = now.throttle.abs() - before.throttle.abs();
+                prop_assert!(grown <= LIMITS.throttle_rate_s * dt_s + 1e-12);
+                if let (Arms::Position(a), Arms::Position(b)) = (now.arms, before.arms) {
+                    for (a, b) in a.iter().zip(b) {
+                        if let (Some(a), Some(b)) = (a, b) {
+                            prop_assert!((a - b).abs() <= LIMITS.stroke_rate_m_s * dt_s + 1e-12);
+                        }
+                    }
+                }
+            }
+            before = Some(now);
+        }
+    }
+
+    #[test]
+    fn limits_of_any_bits_never_panic_and_hold_when_sound(
+        floats in proptest::array::uniform11(bits()), periods in any::<u32>(),
+        period_ns in any::<u64>(), modulus in any::<u8>(), lag in any::<u8>(),
+        inputs in proptest::collection::vec(any_input(), 1..4),
+    ) {
+        let every = Deadline { period_ns, periods };
+        let [s0, s1, s2, o, t0, t1, a0, a1, a2, r, p] = floats;
+        let limits = Limits {
+            stroke_max_m: s0, stroke_rate_m_s: s1, stroke_error_m: s2, opening_max: o,
+            throttle_max: t0, throttle_rate_s: t1, angle_max_rad: a0, angle_rate_rad_s: a1,
+            angle_error_rad: a2, roll_max_rad: r, pitch_max_rad: p, status: every, sensors: every,
+            observation: every, policy: every, acknowledgement: every, handshake_steps: 1,
+            handshake_max_ns: period_ns, counter_lag_max: lag, counter_modulus: modulus,
+            step_max_ns: period_ns,
+        };
+        let mut state = State::new();
+        for input in inputs {
+            let (next, verdict) = step(&limits, state, &input, period_ns);
+            check(&limits, next, &verdict);
+            state = next;
+        }
+    }
+}

@@ -96,10 +96,7 @@ mod tests {
         assert_eq!(recorder.receive().unwrap(), None);
         let log = String::from_utf8(recorder.into_parts().1.into_inner()).unwrap();
         let heard_us = heard.at.as_nanos() / 1_000;
-        assert_eq!(
-            log,
-            format!("(0.001000) vcan0 001#A5\n(0.{heard_us:06}) vcan0 002#A5\n")
-        );
+        assert_eq!(log, format!("(0.001000) vcan0 001#A5\n(0.{heard_us:06}) vcan0 002#A5\n"));
 
         bus.advance(SimTime::from_millis(2));
         assert_eq!(bus.receive(b).unwrap().frame, ping);
@@ -112,9 +109,6 @@ mod tests {
         let mut full: [u8; 4] = [0; 4];
         let mut recorder = Recorder::new(bus.port(a), Writer::new(&mut full[..], "vcan0"));
         let frame = Frame::new(CanId::Standard(1), &[]).unwrap();
-        assert!(matches!(
-            recorder.send(SimTime::ZERO, &frame),
-            Err(RecordError::Log(_))
-        ));
+        assert!(matches!(recorder.send(SimTime::ZERO, &frame), Err(RecordError::Log(_))));
     }
 }

@@ -33,12 +33,7 @@ pub enum BadLine {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Line<'a> {
     /// A data frame.
-    Data {
-        at: SimTime,
-        interface: &'a str,
-        frame: Frame,
-        direction: Option<Direction>,
-    },
+    Data { at: SimTime, interface: &'a str, frame: Frame, direction: Option<Direction> },
     /// A remote frame.
     Remote,
     /// An error frame of SocketCAN.
@@ -51,19 +46,13 @@ pub(super) enum Line<'a> {
 
 /// Reads one line, without its line feed.
 pub(super) fn parse(line: &[u8]) -> Result<Line<'_>, BadLine> {
-    let mut words = line
-        .split(u8::is_ascii_whitespace)
-        .filter(|word| !word.is_empty());
+    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let Some(time) = words.next() else {
         return Ok(Line::Blank);
     };
     let at = parse_time(time).ok_or(BadLine::Time)?;
-    let interface = words
-        .next()
-        .and_then(|word| core::str::from_utf8(word).ok());
-    let interface = interface
-        .filter(|name| !name.contains('#'))
-        .ok_or(BadLine::Interface)?;
+    let interface = words.next().and_then(|word| core::str::from_utf8(word).ok());
+    let interface = interface.filter(|name| !name.contains('#')).ok_or(BadLine::Interface)?;
     let frame = words.next().ok_or(BadLine::Identifier)?;
     let direction = match (words.next(), words.next()) {
         (None, _) => None,
@@ -72,12 +61,7 @@ pub(super) fn parse(line: &[u8]) -> Result<Line<'_>, BadLine> {
         _ => return Err(BadLine::Trailing),
     };
     Ok(match parse_frame(frame)? {
-        Body::Data(frame) => Line::Data {
-            at,
-            interface,
-            frame,
-            direction,
-        },
+        Body::Data(frame) => Line::Data { at, interface, frame, direction },
         Body::Remote => Line::Remote,
         Body::Error => Line::Error,
         Body::Fd => Line::Fd,
@@ -94,11 +78,7 @@ fn parse_time(word: &[u8]) -> Option<SimTime> {
     }
     let missing_digits = 9 - u32::try_from(fraction.len()).ok()?;
     let nanos = decimal(fraction)? * 10_u64.pow(missing_digits);
-    Some(SimTime::from_nanos(
-        decimal(seconds)?
-            .checked_mul(1_000_000_000)?
-            .checked_add(nanos)?,
-    ))
+    Some(SimTime::from_nanos(decimal(seconds)?.checked_mul(1_000_000_000)?.checked_add(nanos)?))
 }
 
 fn decimal(digits: &[u8]) -> Option<u64> {
@@ -120,10 +100,7 @@ fn parse_frame(word: &[u8]) -> Result<Body, BadLine> {
     /// Marks an error frame in SocketCAN's identifiers (`CAN_ERR_FLAG` of linux/can.h).
     const ERROR_FLAG: u32 = 0x2000_0000;
 
-    let hash = word
-        .iter()
-        .position(|&byte| byte == b'#')
-        .ok_or(BadLine::Identifier)?;
+    let hash = word.iter().position(|&byte| byte == b'#').ok_or(BadLine::Identifier)?;
     let (digits, body) = (&word[..hash], &word[hash + 1..]);
     let raw = hexadecimal(digits).ok_or(BadLine::Identifier)?;
     let id = match digits.len() {
@@ -145,7 +122,7 @@ fn parse_frame(word: &[u8]) -> Result<Body, BadLine> {
 
 fn parse_data(id: CanId, digits: &[u8]) -> Option<Frame> {
     let mut bytes = [0; 8];
-    if digits.len() % 2 != 0 {
+    if !digits.len().is_multiple_of(2) {
         return None;
     }
     let data = bytes.get_mut(..digits.len() / 2)?;
@@ -160,9 +137,7 @@ fn hexadecimal(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 8 {
         return None;
     }
-    digits.iter().try_fold(0, |number, &digit| {
-        Some(number << 4 | char::from(digit).to_digit(16)?)
-    })
+    digits.iter().try_fold(0, |number, &digit| Some(number << 4 | char::from(digit).to_digit(16)?))
 }
 
 #[cfg(test)]
@@ -171,12 +146,7 @@ mod tests {
 
     fn data(line: &str) -> (SimTime, Frame, Option<Direction>) {
         match parse(line.as_bytes()) {
-            Ok(Line::Data {
-                at,
-                frame,
-                direction,
-                ..
-            }) => (at, frame, direction),
+            Ok(Line::Data { at, frame, direction, .. }) => (at, frame, direction),
             other => panic!("{line}: {other:?}"),
         }
     }
@@ -186,29 +156,17 @@ mod tests {
         let (at, frame, _) = data("(1758440579.175206) can0 0CFF4027#5555555555551299");
         assert_eq!(at.as_nanos(), 1_758_440_579_175_206_000);
         assert_eq!(frame.id(), CanId::Extended(0x0CFF_4027));
-        assert_eq!(
-            frame.data(),
-            [0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x12, 0x99]
-        );
-        assert_eq!(
-            data("(0.0) can0 123#").1,
-            Frame::new(CanId::Standard(0x123), &[]).unwrap()
-        );
+        assert_eq!(frame.data(), [0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x12, 0x99]);
+        assert_eq!(data("(0.0) can0 123#").1, Frame::new(CanId::Standard(0x123), &[]).unwrap());
         assert_eq!(data("(0.0) can0 00000123#").1.id(), CanId::Extended(0x123));
     }
 
     #[test]
     fn reads_what_other_writers_write() {
         assert_eq!(data("(1.000000001) vcan0 0cff4027#aB").1.data(), [0xAB]);
-        assert_eq!(
-            data("(1.000000001) vcan0 123#AB").0.as_nanos(),
-            1_000_000_001
-        );
+        assert_eq!(data("(1.000000001) vcan0 123#AB").0.as_nanos(), 1_000_000_001);
         assert_eq!(data("(1.5)  any 123#AB R").2, Some(Direction::Received));
-        assert_eq!(
-            data("(1.5)\tany\t123#AB T\r").2,
-            Some(Direction::Transmitted)
-        );
+        assert_eq!(data("(1.5)\tany\t123#AB T\r").2, Some(Direction::Transmitted));
     }
 
     #[test]

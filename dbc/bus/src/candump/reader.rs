@@ -145,22 +145,12 @@ impl<R: BufRead> Reader<R> {
         while !self.done && self.read_line()? {
             let line = parse(&self.bytes).map_err(|what| self.bad(what))?;
             match line {
-                Line::Data {
-                    at,
-                    interface,
-                    frame,
-                    direction,
-                } => {
+                Line::Data { at, interface, frame, direction } => {
                     if *self.interface != *interface {
                         self.interface = interface.into();
                     }
                     let interface = Arc::clone(&self.interface);
-                    return Ok(Some(Record {
-                        at,
-                        interface,
-                        frame,
-                        direction,
-                    }));
+                    return Ok(Some(Record { at, interface, frame, direction }));
                 }
                 Line::Remote => self.skipped.remote += 1,
                 Line::Error => self.skipped.error += 1,
@@ -177,11 +167,7 @@ impl<R: BufRead> Reader<R> {
     fn read_line(&mut self) -> Result<bool, ReadError> {
         self.bytes.clear();
         self.line += 1;
-        let read = self
-            .input
-            .by_ref()
-            .take(LINE_BYTES)
-            .read_until(b'\n', &mut self.bytes);
+        let read = self.input.by_ref().take(LINE_BYTES).read_until(b'\n', &mut self.bytes);
         let cut = match read {
             Ok(_) if self.bytes.pop_if(|last| *last == b'\n').is_some() => return Ok(true),
             Ok(0) => false,
@@ -192,18 +178,11 @@ impl<R: BufRead> Reader<R> {
             // How a decompressor says that its input was cut.
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => true,
             Err(source) => {
-                return Err(ReadError::Io {
-                    log: Arc::clone(&self.log),
-                    line: self.line,
-                    source,
-                });
+                return Err(ReadError::Io { log: Arc::clone(&self.log), line: self.line, source });
             }
         };
         if cut && !self.accepts_cut {
-            return Err(ReadError::Cut {
-                log: Arc::clone(&self.log),
-                line: self.line,
-            });
+            return Err(ReadError::Cut { log: Arc::clone(&self.log), line: self.line });
         }
         self.cut_line = cut.then_some(self.line);
         self.line -= 1;
@@ -211,11 +190,7 @@ impl<R: BufRead> Reader<R> {
     }
 
     fn bad(&self, what: BadLine) -> ReadError {
-        ReadError::Bad {
-            log: Arc::clone(&self.log),
-            line: self.line,
-            what,
-        }
+        ReadError::Bad { log: Arc::clone(&self.log), line: self.line, what }
     }
 }
 
@@ -238,17 +213,8 @@ mod tests {
         let mut reader = Reader::new(LOG.as_bytes(), "a.log");
         let records: Vec<_> = reader.by_ref().map(Result::unwrap).collect();
         assert_eq!(records.len(), 2);
-        assert_eq!(
-            (&*records[0].interface, &*records[1].interface),
-            ("can0", "can1")
-        );
-        assert_eq!(
-            reader.skipped(),
-            Skipped {
-                remote: 1,
-                ..Skipped::default()
-            }
-        );
+        assert_eq!((&*records[0].interface, &*records[1].interface), ("can0", "can1"));
+        assert_eq!(reader.skipped(), Skipped { remote: 1, ..Skipped::default() });
         assert_eq!((reader.line(), reader.cut_line()), (4, None));
         assert!(reader.next().is_none());
     }
@@ -267,10 +233,7 @@ mod tests {
     fn a_cut_line_is_an_error_unless_accepted() {
         // Cut within the data: it still reads as a frame, but not as the one that was sent.
         let cut = "(1.5) can0 123#5555\n(1.6) can0 123#55";
-        let error = Reader::new(cut.as_bytes(), "a.log")
-            .nth(1)
-            .unwrap()
-            .unwrap_err();
+        let error = Reader::new(cut.as_bytes(), "a.log").nth(1).unwrap().unwrap_err();
         assert!(matches!(error, ReadError::Cut { line: 2, .. }), "{error}");
 
         let mut reader = Reader::new(cut.as_bytes(), "a.log").accepting_cut();
@@ -287,10 +250,7 @@ mod tests {
             }
         }
         let input = || io::BufReader::new("(1.5) can0 123#\n(1.".as_bytes().chain(CutStream));
-        let error = Reader::new(input(), "a.log.gz")
-            .nth(1)
-            .unwrap()
-            .unwrap_err();
+        let error = Reader::new(input(), "a.log.gz").nth(1).unwrap().unwrap_err();
         assert!(matches!(error, ReadError::Cut { line: 2, .. }), "{error}");
         let mut reader = Reader::new(input(), "a.log.gz").accepting_cut();
         assert_eq!(reader.by_ref().filter_map(Result::ok).count(), 1);
@@ -301,15 +261,6 @@ mod tests {
     fn a_file_without_lines_is_not_read_into_memory() {
         let error = Reader::new(io::BufReader::new(io::repeat(b'x')), "x").next();
         let error = error.unwrap().unwrap_err();
-        assert!(
-            matches!(
-                error,
-                ReadError::Bad {
-                    what: BadLine::TooLong,
-                    ..
-                }
-            ),
-            "{error}"
-        );
+        assert!(matches!(error, ReadError::Bad { what: BadLine::TooLong, .. }), "{error}");
     }
 }

@@ -33,11 +33,7 @@ impl<W: Write> Writer<W> {
         let interface = interface.replace(|c: char| c.is_whitespace() || c == '#', "_");
         Self {
             out,
-            interface: if interface.is_empty() {
-                "_".to_owned()
-            } else {
-                interface
-            },
+            interface: if interface.is_empty() { "_".to_owned() } else { interface },
             start: Duration::ZERO,
             precision: Precision::default(),
             line: Vec::with_capacity(80),
@@ -72,18 +68,13 @@ impl<W: Write> Writer<W> {
         }
         self.line.extend_from_slice(self.interface.as_bytes());
         self.line.push(b' ');
-        let digits = if matches!(frame.id(), CanId::Standard(_)) {
-            3
-        } else {
-            8
-        };
+        let digits = if matches!(frame.id(), CanId::Standard(_)) { 3 } else { 8 };
         for digit in (0..digits).rev() {
             self.line.push(nibble(frame.id().raw() >> (4 * digit)));
         }
         self.line.push(b'#');
         for &byte in frame.data() {
-            self.line
-                .extend([nibble(u32::from(byte >> 4)), nibble(u32::from(byte))]);
+            self.line.extend([nibble(u32::from(byte >> 4)), nibble(u32::from(byte))]);
         }
         self.line.push(b'\n');
         self.out.write_all(&self.line)
@@ -114,9 +105,7 @@ mod tests {
 
     fn written(writer: impl FnOnce(Writer<Vec<u8>>) -> Writer<Vec<u8>>, frame: &Frame) -> String {
         let mut writer = writer(Writer::new(Vec::new(), "can0"));
-        writer
-            .write(SimTime::from_nanos(1_005_006_999), frame)
-            .unwrap();
+        writer.write(SimTime::from_nanos(1_005_006_999), frame).unwrap();
         String::from_utf8(writer.into_inner()).unwrap()
     }
 
@@ -132,19 +121,14 @@ mod tests {
     fn adds_the_start_and_keeps_nanoseconds_where_asked() {
         let empty = Frame::new(CanId::Standard(0x1F), &[]).unwrap();
         let start = Duration::from_secs(1_758_440_579);
-        let line = written(
-            |w| w.starting_at(start).with_precision(Precision::Nanos),
-            &empty,
-        );
+        let line = written(|w| w.starting_at(start).with_precision(Precision::Nanos), &empty);
         assert_eq!(line, "(1758440580.005006999) can0 01F#\n");
     }
 
     #[test]
     fn a_name_that_would_break_the_line_is_mended() {
         let mut writer = Writer::new(Vec::new(), "can 0\n");
-        writer
-            .write(SimTime::ZERO, &Frame::new(CanId::Standard(1), &[]).unwrap())
-            .unwrap();
+        writer.write(SimTime::ZERO, &Frame::new(CanId::Standard(1), &[]).unwrap()).unwrap();
         assert_eq!(writer.into_inner(), b"(0.000000) can_0_ 001#\n");
     }
 }

@@ -110,10 +110,7 @@ impl VirtualBus {
     /// # Panics
     /// The node is of another bus.
     pub fn port(&mut self, node: NodeId) -> Port<'_> {
-        assert!(
-            node.0 < self.nodes.len(),
-            "{node:?} is not attached to this bus"
-        );
+        assert!(node.0 < self.nodes.len(), "{node:?} is not attached to this bus");
         Port::new(self, node)
     }
 
@@ -152,12 +149,7 @@ impl VirtualBus {
 
     /// Delivers the frame on the wire if it ends at or before `to_ns`.
     fn complete(&mut self, to_ns: u64) {
-        let Some(OnWire {
-            node,
-            frame,
-            end_ns,
-        }) = self.on_wire
-        else {
+        let Some(OnWire { node, frame, end_ns }) = self.on_wire else {
             return;
         };
         if end_ns > to_ns {
@@ -180,12 +172,7 @@ impl VirtualBus {
     /// Gives the idle bus to the winner of the first arbitration before `to_ns`; false if
     /// there is none.
     fn arbitrate(&mut self, to_ns: u64) -> bool {
-        let heads = || {
-            self.nodes
-                .iter()
-                .enumerate()
-                .filter_map(|(i, n)| Some((i, n.head()?)))
-        };
+        let heads = || self.nodes.iter().enumerate().filter_map(|(i, n)| Some((i, n.head()?)));
         let Some(first_ready_ns) = heads().map(|(_, head)| head.ready_ns).min() else {
             return false;
         };
@@ -220,23 +207,14 @@ impl VirtualBus {
             let first_at = SimTime::from_nanos(start_ns);
             self.collisions
                 .entry(id)
-                .or_insert(Collision {
-                    id,
-                    nodes: (node, rival),
-                    first_at,
-                    count: 0,
-                })
+                .or_insert(Collision { id, nodes: (node, rival), first_at, count: 0 })
                 .count += 1;
         }
         let bits = frame_bits(&frame);
         let end_ns = start_ns + self.bitrate.nanos(bits);
         self.idle_from_ns = end_ns + self.bitrate.nanos(INTERMISSION_BITS);
         self.load.take(start_ns, self.idle_from_ns);
-        self.on_wire = Some(OnWire {
-            node,
-            frame,
-            end_ns,
-        });
+        self.on_wire = Some(OnWire { node, frame, end_ns });
         true
     }
 

@@ -14,21 +14,13 @@ pub(super) struct LoadMeter {
 
 impl LoadMeter {
     pub(super) fn new(window_ns: u64) -> Self {
-        Self {
-            window_ns,
-            taken: VecDeque::new(),
-            total_ns: 0,
-        }
+        Self { window_ns, taken: VecDeque::new(), total_ns: 0 }
     }
 
     /// A frame takes the bus from `from_ns` until `until_ns`.
     pub(super) fn take(&mut self, from_ns: u64, until_ns: u64) {
         let window_start = from_ns.saturating_sub(self.window_ns);
-        while self
-            .taken
-            .front()
-            .is_some_and(|&(_, until)| until <= window_start)
-        {
+        while self.taken.front().is_some_and(|&(_, until)| until <= window_start) {
             self.taken.pop_front();
         }
         self.taken.push_back((from_ns, until_ns));
@@ -38,10 +30,7 @@ impl LoadMeter {
     /// Share of the time since the start, 0 to 1.
     pub(super) fn total(&self, now_ns: u64) -> f64 {
         // Of a frame still on the bus only what has passed counts.
-        let ahead = self
-            .taken
-            .back()
-            .map_or(0, |&(_, until)| until.saturating_sub(now_ns));
+        let ahead = self.taken.back().map_or(0, |&(_, until)| until.saturating_sub(now_ns));
         share(self.total_ns - ahead, now_ns)
     }
 
@@ -61,11 +50,7 @@ impl LoadMeter {
 
 #[allow(clippy::cast_precision_loss)] // a ratio for people; the sums stay exact
 fn share(busy_ns: u64, span_ns: u64) -> f64 {
-    if span_ns == 0 {
-        0.0
-    } else {
-        busy_ns as f64 / span_ns as f64
-    }
+    if span_ns == 0 { 0.0 } else { busy_ns as f64 / span_ns as f64 }
 }
 
 #[cfg(test)]

@@ -56,9 +56,7 @@ impl Bitrate {
         if bits_per_s < 5_000 || bits_per_s > 1_000_000 || 1_000_000_000 % bits_per_s != 0 {
             return Err(BitrateError { bits_per_s });
         }
-        Ok(Self {
-            bit_ns: 1_000_000_000 / bits_per_s,
-        })
+        Ok(Self { bit_ns: 1_000_000_000 / bits_per_s })
     }
 
     /// The rate in bit/s.

@@ -65,15 +65,8 @@ impl Node {
             self.counters.transmit_overflows += 1;
             return;
         }
-        let ready_ns = self
-            .transmit
-            .back()
-            .map_or(ready_ns, |last| last.ready_ns.max(ready_ns));
-        self.transmit.push_back(Pending {
-            ready_ns,
-            priority: priority(frame.id()),
-            frame,
-        });
+        let ready_ns = self.transmit.back().map_or(ready_ns, |last| last.ready_ns.max(ready_ns));
+        self.transmit.push_back(Pending { ready_ns, priority: priority(frame.id()), frame });
     }
 
     /// The frame that takes part in arbitration next.

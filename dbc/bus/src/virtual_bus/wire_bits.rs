@@ -55,20 +55,14 @@ fn before_crc(frame: &Frame) -> (u128, u32) {
         CanId::Standard(id) => (u64::from(id) << 7, 1 + 11 + 1 + 2 + 4),
         CanId::Extended(id) => {
             let id = u64::from(id);
-            (
-                ((id >> 18) << 20 | 0b11 << 18 | (id & 0x3_FFFF)) << 7,
-                1 + 11 + 2 + 18 + 1 + 2 + 4,
-            )
+            (((id >> 18) << 20 | 0b11 << 18 | (id & 0x3_FFFF)) << 7, 1 + 11 + 2 + 18 + 1 + 2 + 4)
         }
     };
     let mut bytes = [0; 8];
     bytes[..data.len()].copy_from_slice(data);
     // Eight bytes left-aligned, moved right by the unused ones; a u64 shift by 64 would overflow.
     let payload = u128::from(u64::from_be_bytes(bytes)) >> (64 - 8 * dlc);
-    (
-        u128::from(head | u64::from(dlc)) << (8 * dlc) | payload,
-        head_len + 8 * dlc,
-    )
+    (u128::from(head | u64::from(dlc)) << (8 * dlc) | payload, head_len + 8 * dlc)
 }
 
 /// CRC-15/CAN of right-aligned bits. With an initial value of zero, the zeros in front of them
@@ -90,11 +84,7 @@ const CRC_TABLE: [u16; 256] = {
         let mut crc = (byte as u16) << (CRC_BITS - 8);
         let mut bit = 0;
         while bit < 8 {
-            crc = if crc & 0x4000 == 0 {
-                crc << 1
-            } else {
-                crc << 1 ^ CRC_POLYNOMIAL
-            } & 0x7FFF;
+            crc = if crc & 0x4000 == 0 { crc << 1 } else { crc << 1 ^ CRC_POLYNOMIAL } & 0x7FFF;
             bit += 1;
         }
         table[byte] = crc;
@@ -108,7 +98,7 @@ fn stuff_bits(bits: u128, len: u32) -> u32 {
     let mut run = Run::NONE;
     let mut stuffed = 0;
     let mut left = len;
-    while left % 8 != 0 {
+    while !left.is_multiple_of(8) {
         left -= 1;
         stuffed += u32::from(run.push(bits >> left & 1 == 1));
     }
@@ -131,27 +121,17 @@ struct Run {
 }
 
 impl Run {
-    const NONE: Self = Self {
-        recessive: true,
-        len: 0,
-    };
+    const NONE: Self = Self { recessive: true, len: 0 };
     /// Lengths 0 to 4 at two levels: a fifth equal bit is followed by a stuff bit, length 1.
     const STATES: usize = 2 * STUFF_AFTER as usize;
 
     /// Takes one more bit, and the stuff bit after it where one is due; true if it was.
     const fn push(&mut self, recessive: bool) -> bool {
-        self.len = if recessive == self.recessive {
-            self.len + 1
-        } else {
-            1
-        };
+        self.len = if recessive == self.recessive { self.len + 1 } else { 1 };
         self.recessive = recessive;
         let due = self.len == STUFF_AFTER;
         if due {
-            *self = Self {
-                recessive: !recessive,
-                len: 1,
-            };
+            *self = Self { recessive: !recessive, len: 1 };
         }
         due
     }
@@ -162,10 +142,7 @@ impl Run {
 
     const fn from_index(index: usize) -> Self {
         #[allow(clippy::cast_possible_truncation)] // below STATES
-        Self {
-            recessive: index % 2 == 1,
-            len: (index / 2) as u8,
-        }
+        Self { recessive: index % 2 == 1, len: (index / 2) as u8 }
     }
 }
 
@@ -177,10 +154,7 @@ struct StuffStep {
 }
 
 static STUFF_TABLE: [[StuffStep; 256]; Run::STATES] = {
-    let mut table = [[StuffStep {
-        stuffed: 0,
-        state: 0,
-    }; 256]; Run::STATES];
+    let mut table = [[StuffStep { stuffed: 0, state: 0 }; 256]; Run::STATES];
     let mut state = 0;
     while state < Run::STATES {
         let mut byte = 0;
@@ -194,10 +168,7 @@ static STUFF_TABLE: [[StuffStep; 256]; Run::STATES] = {
             }
             #[allow(clippy::cast_possible_truncation)] // below STATES
             let next = run.index() as u8;
-            table[state][byte] = StuffStep {
-                stuffed,
-                state: next,
-            };
+            table[state][byte] = StuffStep { stuffed, state: next };
             byte += 1;
         }
         state += 1;
@@ -206,6 +177,7 @@ static STUFF_TABLE: [[StuffStep; 256]; Run::STATES] = {
 };
 
 #[cfg(test)]
+#[allow(clippy::unusual_byte_groupings)] // grouped by field
 mod tests {
     use super::*;
 
@@ -216,9 +188,7 @@ mod tests {
     #[test]
     fn crc_gives_the_catalogue_check_value() {
         // CRC-15/CAN of "123456789" is 0x059E (catalogue of parametrised CRC algorithms).
-        let bits = b"123456789"
-            .iter()
-            .fold(0, |bits, &byte| bits << 8 | u128::from(byte));
+        let bits = b"123456789".iter().fold(0, |bits, &byte| bits << 8 | u128::from(byte));
         assert_eq!(crc15(bits), 0x059E);
     }
 
@@ -234,20 +204,14 @@ mod tests {
     fn layout_of_a_standard_frame_by_hand() {
         // SOF, identifier, RTR IDE r0, DLC 1, data.
         let expected = 0b0_101_0101_0101_000_0001_1010_0101;
-        assert_eq!(
-            before_crc(&frame(CanId::Standard(0x555), &[0xA5])),
-            (expected, 27)
-        );
+        assert_eq!(before_crc(&frame(CanId::Standard(0x555), &[0xA5])), (expected, 27));
     }
 
     #[test]
     fn layout_of_an_extended_frame_by_hand() {
         // SOF, eleven bits, SRR IDE, eighteen bits, RTR r1 r0, DLC 0.
         let expected = 0b0_00011001111_11_111101000000100111_000_0000;
-        assert_eq!(
-            before_crc(&frame(CanId::Extended(0x0CFF_4027 & 0x1FFF_FFFF), &[])).1,
-            39
-        );
+        assert_eq!(before_crc(&frame(CanId::Extended(0x0CFF_4027 & 0x1FFF_FFFF), &[])).1, 39);
         let id = 0b00011001111_111101000000100111;
         assert_eq!(before_crc(&frame(CanId::Extended(id), &[])), (expected, 39));
     }
@@ -258,14 +222,8 @@ mod tests {
         for n in 0..=8 {
             let data = vec![0; n];
             let n = u32::try_from(n).unwrap();
-            assert_eq!(
-                with_crc(&frame(CanId::Standard(1), &data)).1 + TRAILER_BITS,
-                44 + 8 * n
-            );
-            assert_eq!(
-                with_crc(&frame(CanId::Extended(1), &data)).1 + TRAILER_BITS,
-                64 + 8 * n
-            );
+            assert_eq!(with_crc(&frame(CanId::Standard(1), &data)).1 + TRAILER_BITS, 44 + 8 * n);
+            assert_eq!(with_crc(&frame(CanId::Extended(1), &data)).1 + TRAILER_BITS, 64 + 8 * n);
         }
     }
 

@@ -110,3 +110,22 @@ fn the_reference_counts_as_one_does_on_paper() {
     assert_eq!(reference_bits(&all_dominant), 50);
     assert_eq!(frame_bits(&all_dominant), 50);
 }
+
+/// What `canbusload -e` of can-utils counts for these on a virtual interface, intermission
+/// included.
+#[test]
+fn can_utils_counts_the_same_bits() {
+    use xt28_bus::virtual_bus::wire_bits::INTERMISSION_BITS;
+    let counted: [(CanId, &[u8], u32); 6] = [
+        (CanId::Standard(0x000), &[], 53),
+        (CanId::Standard(0x7FF), &[], 50),
+        (CanId::Standard(0x555), &[0x55; 8], 112),
+        (CanId::Extended(0x0CFF_4027), &[0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x12, 0x99], 135),
+        (CanId::Extended(0x0000_0000), &[0x00; 8], 150),
+        (CanId::Extended(0x1FFF_FFFF), &[0xFF; 8], 149),
+    ];
+    for (id, data, bits) in counted {
+        let frame = Frame::new(id, data).unwrap();
+        assert_eq!(frame_bits(&frame) + INTERMISSION_BITS, bits, "{frame:?}");
+    }
+}

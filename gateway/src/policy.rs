@@ -1,0 +1,54 @@
+//! Where demands come from: one trait, and the policies that need no file.
+
+mod goto;
+mod hold;
+mod levelling;
+mod path;
+mod script;
+mod script_file;
+mod spec;
+mod steering;
+
+use xt28_safety::Command;
+
+use crate::Observation;
+
+pub use goto::{Goto, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
+pub use hold::Hold;
+pub use script::Script;
+pub use script_file::ScriptError;
+pub use spec::{SpecError, from_spec};
+
+/// Turns observations into demands. It sees nothing else and is trusted with nothing: the safety
+/// kernel stands between it and the bus.
+pub trait Policy: Send {
+    /// When it wants to be asked.
+    fn pace(&self) -> Pace;
+
+    /// What it wants, given what it sees. Also asked while not armed
+    /// (`since_arming_s` is `None`), so that its first armed answer is not its first.
+    fn act(&mut self, observation: &Observation) -> Command;
+
+    /// How far it has come.
+    fn outcome(&self) -> Outcome;
+}
+
+/// When a policy is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// At each GNSS fix, 8 Hz; its answer holds until the next (paper 5.3).
+    Fix,
+    /// At each tick, 100 Hz, fix or not.
+    Tick,
+}
+
+/// How a policy's task stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Still at it.
+    Running,
+    /// Done; its demand now holds the machine.
+    Reached,
+    /// It can't be done, and why; its demand holds the machine.
+    Failed(String),
+}

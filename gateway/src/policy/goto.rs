@@ -1,0 +1,209 @@
+//! `goto:X,Y,HEADING`: drive to a pose, level on the way, stop there.
+//!
+//! The built-in baseline, so that the loop closes without a trained network. It plans one smooth
+//! path when armed and follows it: curvature of the path, previewed by the delay of the steering,
+//! plus feedback on lateral and heading error. Speed falls with the square root of the
+//! distance left, as seen after the delay of the drive.
+
+use xt28_machine::{Machine, SimTime};
+use xt28_safety::{Arms, Command};
+
+use super::levelling::Levelling;
+use super::path::{Path, Point};
+use super::steering::Steering;
+use super::{Outcome, Pace, Policy};
+use crate::pose::wrap;
+use crate::{Located, Observation, Pose};
+
+/// A pose counts as reached this close to it, m (paper 4.2).
+pub const REACHED_DISTANCE_M: f64 = 0.3;
+/// A pose counts as reached with this much heading error, rad (9 degrees, paper 4.2).
+pub const REACHED_HEADING_RAD: f64 = 9.0 * core::f64::consts::PI / 180.0;
+
+/// Speed limit of the paper's reward, m/s.
+const CRUISE_M_S: f64 = 0.8;
+/// Slowest speed driven, m/s: well above the 0.083 below which the joints hold.
+const CREEP_M_S: f64 = 0.2;
+/// Planned deceleration, m/s² (assumed).
+const DECELERATION_M_S2: f64 = 0.1;
+/// Longest delay from throttle to motion, s (paper 3.4); braking is planned for it.
+const DRIVE_DELAY_MAX_S: f64 = 0.7;
+/// Middle of the paper's delays, 0.2 to 0.7 s: the point where the throttle is let go.
+const DRIVE_DELAY_S: f64 = 0.45;
+/// Steering delay and lag that the path is previewed by, s (paper 3.4 and the lead's rate).
+const STEERING_PREVIEW_S: f64 = 1.0;
+/// Curvature per lateral error, 1/m². With the next, an error dies out over some 3 m, about
+/// critically damped (y'' = -k y - c y' along the path; assumed).
+const LATERAL_GAIN_PER_M2: f64 = 0.12;
+/// Curvature per heading error, 1/m.
+const HEADING_GAIN_PER_M: f64 = 0.7;
+/// Share of the tightest curve that planning may use; the rest is left to feedback.
+const PLANNABLE: f64 = 0.9;
+/// Slower than this is standing, m/s.
+const STANDING_M_S: f64 = 0.03;
+/// Standing this long ends a drive, s.
+const STANDING_S: f64 = 1.0;
+/// Throttle trim per speed error, 1/m, and its bound: for a machine that is not quite as fast as
+/// its file says.
+const TRIM_PER_M: f64 = 0.05;
+const TRIM_MAX: f64 = 0.1;
+
+/// Drives to a pose and holds there.
+#[derive(Clone, Debug)]
+pub struct Goto {
+    goal: Pose,
+    steering: Steering,
+    levelling: Levelling,
+    speed_full_m_s: f64,
+    stage: Stage,
+    trim: f64,
+    last_at: Option<SimTime>,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    /// Not armed yet, or no fix.
+    Waiting,
+    /// On the way; metres covered along the path.
+    Driving { path: Path, along_m: f64 },
+    /// Throttle let go; since when it stands, if it does.
+    Stopping { since: Option<SimTime> },
+    /// Standing for good.
+    Ended(Outcome),
+}
+
+impl Goto {
+    /// A drive to `goal` with the machine's steering, speed and arms.
+    #[must_use]
+    pub fn new(machine: &Machine, goal: Pose) -> Self {
+        Self {
+            goal,
+            steering: Steering::new(machine),
+            levelling: Levelling::new(machine),
+            speed_full_m_s: machine.drive.speed_full_m_s,
+            stage: Stage::Waiting,
+            trim: 0.0,
+            last_at: None,
+        }
+    }
+
+    /// Throttle and front joint target.
+    fn drive(&mut self, seen: &Observation, located: &Located, dt_s: f64) -> (f64, f64) {
+        let Stage::Driving { path, along_m } = &mut self.stage else {
+            return (0.0, seen.front_joint_rad);
+        };
+        let on_path = path.nearest(&located.pose, *along_m);
+        *along_m = along_m.max(on_path.along_m);
+        let speed = seen.wheel_speed_m_s;
+        let [ahead_m, ..] = located.pose.to_local(&self.goal);
+        // Near the goal the path is as good as straight, and the projection is the finer measure.
+        let left_m = if ahead_m < 2.0 { ahead_m } else { path.length_m() - on_path.along_m };
+        let preview_m = speed.max(0.0) * STEERING_PREVIEW_S;
+        let curvature = curvature_per_m(
+            path.curvature_per_m(on_path.along_m + preview_m),
+            &on_path,
+            &located.pose,
+        );
+        if left_m <= speed * DRIVE_DELAY_S {
+            self.stage = Stage::Stopping { since: None };
+            return (0.0, seen.front_joint_rad);
+        }
+        let after_delay_m = (left_m - speed * DRIVE_DELAY_MAX_S).max(0.0);
+        let wanted = (2.0 * DECELERATION_M_S2 * after_delay_m).sqrt().clamp(CREEP_M_S, CRUISE_M_S);
+        // Trim only where the speed has had time to settle.
+        if (wanted - speed).abs() < 0.3 * wanted {
+            let trim = self.trim + TRIM_PER_M * (wanted - speed) * dt_s;
+            self.trim = trim.clamp(-TRIM_MAX, TRIM_MAX);
+        }
+        let joint = self.steering.angle_rad(curvature);
+        let throttle = wanted / self.speed_full_m_s + self.trim;
+        (throttle, self.steering.target_rad(joint, seen.front_joint_rad))
+    }
+
+    /// Moves on to the stage that fits what is seen.
+    fn advance(&mut self, seen: &Observation, located: &Located) {
+        match &mut self.stage {
+            Stage::Waiting if seen.since_arming_s.is_some() => {
+                self.stage = self.depart(&located.pose);
+            }
+            Stage::Stopping { since } => {
+                let standing = seen.wheel_speed_m_s.abs() < STANDING_M_S;
+                let start = *since.get_or_insert(seen.at);
+                if !standing {
+                    *since = None;
+                } else if seen.at.since(start).as_secs_f64() >= STANDING_S {
+                    self.stage = Stage::Ended(self.judge(&located.pose));
+                }
+            }
+            Stage::Waiting | Stage::Driving { .. } | Stage::Ended(_) => {}
+        }
+    }
+
+    fn depart(&self, from: &Pose) -> Stage {
+        let tightest = PLANNABLE * self.steering.curvature_max_per_m();
+        if self.judge(from) == Outcome::Reached {
+            return Stage::Ended(Outcome::Reached);
+        }
+        match Path::plan(from, &self.goal, tightest) {
+            Some(path) => Stage::Driving { path, along_m: 0.0 },
+            None => Stage::Ended(Outcome::Failed(format!(
+                "no forward path to the goal is wider than the machine's turning radius of {:.1} m; \
+                 give a goal further ahead",
+                1.0 / tightest
+            ))),
+        }
+    }
+
+    fn judge(&self, pose: &Pose) -> Outcome {
+        let [ahead_m, left_m, turn_rad] = pose.to_local(&self.goal);
+        let distance_m = ahead_m.hypot(left_m);
+        if distance_m <= REACHED_DISTANCE_M && turn_rad.abs() <= REACHED_HEADING_RAD {
+            return Outcome::Reached;
+        }
+        let turn_deg = turn_rad.to_degrees();
+        Outcome::Failed(format!("stopped {distance_m:.2} m and {turn_deg:.1} deg from the goal"))
+    }
+}
+
+/// Path curvature with feedback on where the machine is beside the path.
+fn curvature_per_m(previewed_per_m: f64, on_path: &Point, pose: &Pose) -> f64 {
+    let [_, left_m, _] = on_path.pose.to_local(pose);
+    let off_rad = wrap(pose.heading_rad - on_path.pose.heading_rad);
+    previewed_per_m
+        - LATERAL_GAIN_PER_M2 * left_m.clamp(-2.0, 2.0)
+        - HEADING_GAIN_PER_M * off_rad.sin()
+}
+
+impl Policy for Goto {
+    fn pace(&self) -> Pace {
+        Pace::Fix
+    }
+
+    fn act(&mut self, seen: &Observation) -> Command {
+        let dt_s = self.last_at.map_or(0.0, |last| seen.at.since(last).as_secs_f64().min(0.5));
+        self.last_at = Some(seen.at);
+        let hold = Arms::Position([None; 6]);
+        let mut command = Command {
+            throttle: 0.0,
+            front_angle_rad: seen.front_joint_rad,
+            arms: hold,
+            brake: false,
+        };
+        if let Some(located) = &seen.located {
+            self.advance(seen, located);
+            (command.throttle, command.front_angle_rad) = self.drive(seen, located, dt_s);
+        }
+        if seen.since_arming_s.is_some() {
+            command.arms = Arms::Position(self.levelling.step(seen, dt_s).0.map(Some));
+        }
+        command.brake = matches!(self.stage, Stage::Ended(_));
+        command
+    }
+
+    fn outcome(&self) -> Outcome {
+        match &self.stage {
+            Stage::Ended(outcome) => outcome.clone(),
+            _ => Outcome::Running,
+        }
+    }
+}

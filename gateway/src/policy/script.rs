@@ -1,0 +1,237 @@
+//! `script:FILE`: timed commands for open-loop calibration runs.
+//!
+//! ```toml
+//! # Seconds count from arming. What a command leaves out stays as it is.
+//! end_s = 12                        # the script is over; default: the end of the last command
+//! [[command]]
+//! at_s = 1.0
+//! stroke_mm = [250, 250, "hold", "hold", 250, 250]   # FR FL MR ML BR BL, 0 to 250
+//! [[command]]
+//! at_s = 5.0
+//! ramp_s = 2.0                      # linearly from the values in force
+//! throttle_percent = 40             # -100 to 100
+//! front_angle_deg = 10              # -25 to 25, left > 0
+//! [[command]]
+//! at_s = 9.0
+//! opening_percent = [10, 10, 0, 0, -10, -10]         # valves, -30 to 30, + extends
+//! [[command]]
+//! at_s = 10.0
+//! arms = "off"                      # off, automatic, position, valve
+//! throttle_percent = 0
+//! brake = true
+//! ```
+
+use std::path::Path;
+
+use xt28_safety::{Arms, Command};
+
+use super::script_file::{Entry, Mode, ScriptError, ScriptFile, Stroke};
+use super::{Outcome, Pace, Policy};
+use crate::Observation;
+
+/// Plays timed commands, whatever it sees. Asked at each tick, so its steps are 10 ms sharp.
+#[derive(Clone, Debug)]
+pub struct Script {
+    entries: Vec<Entry>,
+    end_s: f64,
+    start: Option<Start>,
+    now_s: f64,
+}
+
+/// Where the machine stood at arming: what first ramps start from.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    stroke_m: [f64; 6],
+    front_angle_rad: f64,
+}
+
+impl Script {
+    /// A script from a file.
+    ///
+    /// # Errors
+    /// [`ScriptError`], with file, line and what would be right.
+    pub fn load(path: &Path) -> Result<Self, ScriptError> {
+        ScriptFile::read(path).map(Self::new)
+    }
+
+    /// A script from TOML text; `path` only names it in errors.
+    ///
+    /// # Errors
+    /// [`ScriptError::Parse`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, ScriptError> {
+        ScriptFile::parse(text, path).map(Self::new)
+    }
+
+    fn new(file: ScriptFile) -> Self {
+        let ends = file.commands.iter().map(|entry| entry.at_s.get_ref() + entry.ramp_s);
+        let end_s = file.end_s.unwrap_or_else(|| ends.fold(0.0, f64::max));
+        Self { entries: file.commands, end_s, start: None, now_s: 0.0 }
+    }
+
+    /// When the script is over, s since arming.
+    #[must_use]
+    pub const fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// The command in force at `t_s`.
+    fn at(&self, t_s: f64, start: &Start) -> Command {
+        let mut throttle = Channel::resting(0.0);
+        let mut angle_deg = Channel::resting(start.front_angle_rad.to_degrees());
+        let mut strokes_mm = start.stroke_m.map(|s| Channel::resting(s * 1e3));
+        let mut holds = [true; 6];
+        let mut openings = [Channel::resting(0.0); 6];
+        let mut mode = Mode::Position;
+        let mut brake = false;
+        for entry in self.entries.iter().take_while(|entry| *entry.at_s.get_ref() <= t_s) {
+            throttle.go(entry, entry.throttle_percent);
+            angle_deg.go(entry, entry.front_angle_deg);
+            for (i, stroke) in entry.stroke_mm.iter().flatten().enumerate() {
+                holds[i] = matches!(stroke, Stroke::Hold(_));
+                if let Stroke::Target(mm) = stroke {
+                    strokes_mm[i].go(entry, Some(*mm));
+                }
+            }
+            for (i, opening) in entry.opening_percent.iter().flatten().enumerate() {
+                openings[i].go(entry, Some(*opening));
+            }
+            let implied = match (&entry.stroke_mm, &entry.opening_percent) {
+                (Some(_), _) => Some(Mode::Position),
+                (_, Some(_)) => Some(Mode::Valve),
+                _ => None,
+            };
+            mode = entry.arms.or(implied).unwrap_or(mode);
+            brake = entry.brake.unwrap_or(brake);
+        }
+        let target = |i: usize| (!holds[i]).then(|| strokes_mm[i].value(t_s) * 1e-3);
+        let arms = match mode {
+            Mode::Off => Arms::Off,
+            Mode::Automatic => Arms::Automatic,
+            Mode::Position => Arms::Position([0, 1, 2, 3, 4, 5].map(target)),
+            Mode::Valve => Arms::Valve(openings.map(|o| o.value(t_s) * 1e-2)),
+        };
+        let front_angle_rad = angle_deg.value(t_s).to_radians();
+        Command { throttle: throttle.value(t_s) * 1e-2, front_angle_rad, arms, brake }
+    }
+}
+
+impl Policy for Script {
+    fn pace(&self) -> Pace {
+        Pace::Tick
+    }
+
+    fn act(&mut self, seen: &Observation) -> Command {
+        let here = Start { stroke_m: seen.stroke_m.0, front_angle_rad: seen.front_joint_rad };
+        let Some(t_s) = seen.since_arming_s else {
+            self.start = None;
+            // Before arming nothing of the script is in force, not even its commands at zero.
+            let arms = Arms::Position([None; 6]);
+            return Command {
+                throttle: 0.0,
+                front_angle_rad: here.front_angle_rad,
+                arms,
+                brake: false,
+            };
+        };
+        self.now_s = t_s;
+        let start = *self.start.get_or_insert(here);
+        self.at(t_s, &start)
+    }
+
+    fn outcome(&self) -> Outcome {
+        let over = self.start.is_some() && self.now_s >= self.end_s;
+        if over { Outcome::Reached } else { Outcome::Running }
+    }
+}
+
+/// One number over time: constant, or on a line between two times.
+#[derive(Clone, Copy, Debug)]
+struct Channel {
+    from: f64,
+    to: f64,
+    from_s: f64,
+    ramp_s: f64,
+}
+
+impl Channel {
+    const fn resting(value: f64) -> Self {
+        Self { from: value, to: value, from_s: 0.0, ramp_s: 0.0 }
+    }
+
+    fn value(&self, t_s: f64) -> f64 {
+        let done = (t_s - self.from_s) / self.ramp_s;
+        if done < 1.0 { self.from + (self.to - self.from) * done } else { self.to }
+    }
+
+    /// Sets off for `to`, if the entry names one, from wherever the channel is then.
+    fn go(&mut self, entry: &Entry, to: Option<f64>) {
+        if let Some(to) = to {
+            let from_s = *entry.at_s.get_ref();
+            *self = Self { from: self.value(from_s), to, from_s, ramp_s: entry.ramp_s };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"
+[[command]]
+at_s = 1
+stroke_mm = [250, 0, "hold", "hold", 100, 100]
+[[command]]
+at_s = 2
+ramp_s = 4
+throttle_percent = 40
+front_angle_deg = -20
+[[command]]
+at_s = 4
+throttle_percent = 0
+opening_percent = [10, -10, 0, 0, 30, -30]
+"#;
+
+    fn at(t_s: f64) -> Command {
+        let start = Start { stroke_m: [0.17; 6], front_angle_rad: 0.0 };
+        Script::parse(TEXT, Path::new("t.toml")).unwrap().at(t_s, &start)
+    }
+
+    #[test]
+    fn commands_come_into_force_at_their_time_and_stay() {
+        assert_eq!(at(0.99).arms, Arms::Position([None; 6]));
+        let strokes = [Some(0.25), Some(0.0), None, None, Some(0.1), Some(0.1)];
+        assert_eq!(at(1.0).arms, Arms::Position(strokes));
+        assert_eq!(at(3.99).arms, Arms::Position(strokes));
+        assert_eq!(at(4.0).arms, Arms::Valve([0.1, -0.1, 0.0, 0.0, 0.3, -0.3]));
+    }
+
+    #[test]
+    fn a_ramp_is_a_line_and_a_step_ends_it() {
+        assert!((at(3.0).throttle - 0.1).abs() < 1e-12);
+        assert_eq!(at(4.0).throttle, 0.0);
+        assert!((at(4.0).front_angle_rad + 10_f64.to_radians()).abs() < 1e-12);
+        assert!((at(9.0).front_angle_rad + 20_f64.to_radians()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_is_over_after_its_last_ramp() {
+        assert_eq!(Script::parse(TEXT, Path::new("t.toml")).unwrap().end_s(), 6.0);
+    }
+
+    #[test]
+    fn a_bad_line_is_refused_by_its_number() {
+        for (from, to, wanted) in [
+            ("at_s = 2", "at_s = 0.5", "t.toml:6: at_s = 0.5 must not be before"),
+            ("throttle_percent = 40", "throttle = 40", "t.toml:8: unknown field `throttle`"),
+            ("[250,", "[260,", "t.toml:3: stroke_mm = 260 must be 0 to 250"),
+            ("front_angle_deg = -20", "front_angle_deg = nan", "t.toml:6: front_angle_deg = NaN"),
+            ("ramp_s = 4", "arms = \"crane\"", "t.toml:7: unknown variant `crane`"),
+        ] {
+            assert!(TEXT.contains(from));
+            let error = Script::parse(&TEXT.replacen(from, to, 1), Path::new("t.toml"));
+            let error = error.unwrap_err().to_string();
+            assert!(error.starts_with(wanted), "{error}");
+            assert!(!error.contains('\n'), "{error}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The script file: timed commands as people write calibration tests, refused line by line.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// Why a script was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ScriptError {
+    /// The file could not be read.
+    #[error("{path}: cannot read the script: {source}; give script: an existing file")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The text is not a script.
+    #[error("{path}:{line}: {problem}")]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there and what would be right.
+        problem: String,
+    },
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScriptFile {
+    /// When the script is over, s; the last command's end when left out.
+    pub(super) end_s: Option<f64>,
+    #[serde(rename = "command")]
+    pub(super) commands: Vec<Entry>,
+}
+
+/// One timed command. What it leaves out stays as it is.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Entry {
+    /// When, s since arming.
+    pub(super) at_s: Spanned<f64>,
+    /// Time to go linearly from the value in force to the new one, s.
+    #[serde(default)]
+    pub(super) ramp_s: f64,
+    pub(super) throttle_percent: Option<f64>,
+    pub(super) front_angle_deg: Option<f64>,
+    pub(super) arms: Option<Mode>,
+    pub(super) stroke_mm: Option<[Stroke; 6]>,
+    pub(super) opening_percent: Option<[f64; 6]>,
+    pub(super) brake: Option<bool>,
+}
+
+/// How the arms are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Mode {
+    Off,
+    Automatic,
+    Position,
+    Valve,
+}
+
+/// A target stroke, or the word "hold".
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Stroke {
+    Target(f64),
+    Hold(Hold),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(super) enum Hold {
+    #[serde(rename = "hold")]
+    Hold,
+}
+
+impl ScriptFile {
+    pub(super) fn read(path: &Path) -> Result<Self, ScriptError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ScriptError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path)
+    }
+
+    pub(super) fn parse(text: &str, path: &Path) -> Result<Self, ScriptError> {
+        let refuse = |at: usize, problem: String| ScriptError::Parse {
+            path: path.to_owned(),
+            line: text.as_bytes()[..at.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1,
+            problem,
+        };
+        let file: Self = toml::from_str(text).map_err(|error| {
+            let problem = error.message().trim_end().replace('\n', " ");
+            refuse(error.span().map_or(0, |span| span.start), problem)
+        })?;
+        let mut before_s = 0.0;
+        for entry in &file.commands {
+            let at = entry.at_s.span().start;
+            entry.check(before_s).map_err(|problem| refuse(at, problem))?;
+            before_s = *entry.at_s.get_ref();
+        }
+        match file.end_s {
+            Some(end_s) if !(end_s >= before_s && end_s.is_finite()) => {
+                Err(refuse(0, format!("end_s = {end_s} must not be before the last command")))
+            }
+            _ => Ok(file),
+        }
+    }
+}
+
+impl Entry {
+    /// Refuses what the safety kernel would cut, so that a script runs as written.
+    fn check(&self, before_s: f64) -> Result<(), String> {
+        let at_s = *self.at_s.get_ref();
+        if !(at_s >= before_s && at_s.is_finite()) {
+            return Err(format!("at_s = {at_s} must not be before the command above, {before_s}"));
+        }
+        let strokes = self.stroke_mm.iter().flatten().filter_map(|stroke| match stroke {
+            Stroke::Target(mm) => Some(("stroke_mm", *mm, 0.0, 250.0)),
+            Stroke::Hold(_) => None,
+        });
+        let openings = self.opening_percent.iter().flatten();
+        let numbers = strokes
+            .chain(openings.map(|o| ("opening_percent", *o, -30.0, 30.0)))
+            .chain(self.throttle_percent.map(|t| ("throttle_percent", t, -100.0, 100.0)))
+            .chain(self.front_angle_deg.map(|a| ("front_angle_deg", a, -25.0, 25.0)))
+            .chain([("ramp_s", self.ramp_s, 0.0, 3600.0)]);
+        for (key, value, low, high) in numbers {
+            // Written so that NaN is refused.
+            if !(value >= low && value <= high) {
+                return Err(format!("{key} = {value} must be {low} to {high}"));
+            }
+        }
+        match (self.arms, &self.stroke_mm, &self.opening_percent) {
+            (_, Some(_), Some(_)) => {
+                Err("stroke_mm and opening_percent exclude each other: give one".to_owned())
+            }
+            (Some(Mode::Off | Mode::Automatic | Mode::Valve), Some(_), None) => {
+                Err("stroke_mm needs arms = \"position\"".to_owned())
+            }
+            (Some(Mode::Off | Mode::Automatic | Mode::Position), None, Some(_)) => {
+                Err("opening_percent needs arms = \"valve\"".to_owned())
+            }
+            _ => Ok(()),
+        }
+    }
+}

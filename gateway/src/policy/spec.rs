@@ -1,0 +1,80 @@
+//! Policies by name, as a command line or a scenario gives them.
+
+use std::path::Path;
+
+use xt28_machine::Machine;
+
+use super::{Goto, Hold, Policy, Script, ScriptError};
+use crate::Pose;
+
+/// Why a policy could not be had.
+#[derive(Debug, thiserror::Error)]
+pub enum SpecError {
+    /// No policy of that name.
+    #[error("no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE or hold")]
+    Unknown {
+        /// What was given.
+        spec: String,
+    },
+    /// The numbers of a `goto` are not three finite numbers.
+    #[error(
+        "bad goal in {spec:?}; give goto:X,Y,HEADING_DEG in metres and degrees, as goto:25,0,0"
+    )]
+    Goal {
+        /// What was given.
+        spec: String,
+    },
+    /// The script was refused.
+    #[error(transparent)]
+    Script(#[from] ScriptError),
+}
+
+/// The policy that `spec` names: `goto:X,Y,HEADING_DEG`, `script:FILE` or `hold`.
+///
+/// # Errors
+/// [`SpecError`], with what would be right.
+pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecError> {
+    match spec.split_once(':') {
+        Some(("goto", goal)) => {
+            let pose = goal_pose(goal).ok_or_else(|| SpecError::Goal { spec: spec.to_owned() })?;
+            Ok(Box::new(Goto::new(machine, pose)))
+        }
+        Some(("script", file)) => Ok(Box::new(Script::load(Path::new(file))?)),
+        None if spec == "hold" => Ok(Box::new(Hold)),
+        _ => Err(SpecError::Unknown { spec: spec.to_owned() }),
+    }
+}
+
+fn goal_pose(text: &str) -> Option<Pose> {
+    let numbers: Vec<f64> =
+        text.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
+    let [east_m, north_m, heading_deg] = numbers[..] else { return None };
+    numbers.iter().all(|n| n.is_finite()).then(|| Pose {
+        east_m,
+        north_m,
+        heading_rad: crate::pose::wrap(heading_deg.to_radians()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_understood_or_refused_with_the_remedy() {
+        let machine = Machine::xt28();
+        for good in ["goto:25,0,0", "goto: 24.5, -4.98, -23", "hold"] {
+            assert!(from_spec(good, &machine).is_ok(), "{good}");
+        }
+        for bad in ["goto:25,0", "goto:25,0,nan", "goto:", "goto:1,2,3,4"] {
+            let error = from_spec(bad, &machine).err().unwrap().to_string();
+            assert!(error.contains("goto:25,0,0"), "{error}");
+        }
+        for bad in ["", "drive", "hold:1", "onnx:policy"] {
+            let error = from_spec(bad, &machine).err().unwrap().to_string();
+            assert!(error.starts_with("no policy"), "{error}");
+        }
+        let error = from_spec("script:no/such.toml", &machine).err().unwrap().to_string();
+        assert!(error.contains("no/such.toml") && error.contains("existing file"), "{error}");
+    }
+}

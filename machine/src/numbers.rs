@@ -142,6 +142,8 @@ pub struct Vehicle {
     pub arm_pivot_y_m: f64,
     /// Torque per speed error of a circuit's mean, Nm per rad/s and wheel.
     pub circuit_gain_nms: f64,
+    /// Torque per wheel that builds up in 1 s for 1 rad/s of the mean of all six, Nm/rad.
+    pub mean_integral_nm: f64,
     /// Stiffness of a held articulation joint, Nm/rad.
     pub joint_stiffness_nm: f64,
     /// Damping of a held articulation joint, Nm s/rad.
@@ -155,6 +157,7 @@ impl Default for Vehicle {
             wheel_gyration_m: 0.5,
             arm_pivot_y_m: 1.175,
             circuit_gain_nms: 10_000.0,
+            mean_integral_nm: 145_000.0,
             joint_stiffness_nm: 2.0e7,
             joint_damping_nms: 1.0e6,
         }

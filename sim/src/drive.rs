@@ -1,15 +1,11 @@
 //! Engine and hydrostatic transmission: two circuits of three parallel motors, equal pressure in each.
 //!
 //! A circuit is a differential (paper 3.2): its motors share the torque by their displacement, and
-//! the displacement-weighted mean of their speeds follows the pump. The engine holds the mean of
-//! all six without steady error, within its torque and power.
+//! the displacement-weighted mean of their speeds follows the pump, giving way under torque. The engine
+//! holds the mean of all six without steady error, within its torque and power.
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
-/// Torque per wheel for 1 rad/s between the mean of all six and its target, Nm s (assumed).
-const MEAN_GAIN_NMS: f64 = 30_000.0;
-/// The same, integrated: Nm/rad (assumed; leaves no steady error after about a second).
-const MEAN_INTEGRAL_NM: f64 = 60_000.0;
 /// Speed ratio of the sequence law: full displacement of pump and motors is a third of full speed.
 const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 /// Charge pressure of the closed circuits, Pa (assumed).
@@ -31,6 +27,7 @@ pub struct Drive {
     engine_power_w: f64,
     wheel_torque_max_nm: f64,
     circuit_gain_nms: f64,
+    mean_integral_nm: f64,
 }
 
 /// What the transmission remembers.
@@ -84,6 +81,7 @@ impl Drive {
             engine_power_w: machine.drive.engine_power_w,
             wheel_torque_max_nm: w.torque_max_nm,
             circuit_gain_nms: machine.vehicle.circuit_gain_nms,
+            mean_integral_nm: machine.vehicle.mean_integral_nm,
         }
     }
 
@@ -98,14 +96,13 @@ impl Drive {
         let targets = [0, 1].map(|c| self.target_rad_s(c, input));
         let means = [0, 1].map(|c| self.mean_rad_s(c, input));
         let mean_error = (targets[0] + targets[1] - means[0] - means[1]) / 2.0;
-        let common_nm = state.mean_torque_nm + MEAN_GAIN_NMS * mean_error;
 
         let mut out = DriveOutput::default();
         let mut circuit_nm = [0.0; 2];
         for c in 0..2 {
-            let own = self.circuit_gain_nms * (targets[c] - means[c] - mean_error);
-            circuit_nm[c] =
-                (common_nm + own).clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
+            let own_nm = self.circuit_gain_nms * (targets[c] - means[c]);
+            circuit_nm[c] = (state.mean_torque_nm + own_nm)
+                .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
             self.share(c, circuit_nm[c], means[c], input, &mut out.wheel_torque_nm);
         }
         let limit = self.limit_power(input, &mut out);
@@ -116,7 +113,7 @@ impl Drive {
             out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
-        (self.integrate(state, mean_error, common_nm, limit, dt_s), out)
+        (self.integrate(state, mean_error, &circuit_nm, limit, dt_s), out)
     }
 
     /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
@@ -179,16 +176,16 @@ impl Drive {
         &self,
         state: DriveState,
         mean_error: f64,
-        common_nm: f64,
+        circuit_nm: &[f64; 2],
         limit: f64,
         dt_s: f64,
     ) -> DriveState {
-        let saturated = limit < 1.0 || common_nm.abs() >= self.wheel_torque_max_nm;
-        if saturated && mean_error * common_nm > 0.0 {
+        let max = self.wheel_torque_max_nm;
+        let saturated = limit < 1.0 || circuit_nm.iter().any(|nm| nm.abs() >= max);
+        if saturated && mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0 {
             return state;
         }
-        let max = self.wheel_torque_max_nm;
-        let torque = state.mean_torque_nm + MEAN_INTEGRAL_NM * mean_error * dt_s;
+        let torque = state.mean_torque_nm + self.mean_integral_nm * mean_error * dt_s;
         DriveState { mean_torque_nm: torque.clamp(-max, max) }
     }
 }

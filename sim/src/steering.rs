@@ -26,6 +26,8 @@ pub struct SteeringInput {
     pub opening: f64,
     /// Joint angle, rad; left > 0.
     pub angle_rad: f64,
+    /// Joint rate, rad/s.
+    pub rate_rad_s: f64,
 }
 
 impl Steering {
@@ -49,10 +51,12 @@ impl Steering {
         let opening = input.opening.clamp(-1.0, 1.0);
         let rest = state.rest_rad + opening * self.rate_max_rad_s * dt_s;
         let twist = self.torque_max_nm / self.stiffness_nm;
+        // Where the joint will be: a limit around where it was would give way to its own motion.
+        let angle = input.angle_rad + input.rate_rad_s * dt_s;
         SteeringState {
             rest_rad: rest
                 .clamp(-self.angle_max_rad, self.angle_max_rad)
-                .clamp(input.angle_rad - twist, input.angle_rad + twist),
+                .clamp(angle - twist, angle + twist),
         }
     }
 
@@ -78,12 +82,12 @@ mod tests {
         let steering = Steering::new(&Machine::xt28());
         let mut state = SteeringState::default();
         for _ in 0..200 {
-            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad };
+            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad, rate_rad_s: 0.0 };
             state = steering.step(state, &input, 0.005);
         }
         assert!((state.rest_rad.to_degrees() - 10.0).abs() < 1e-9);
         for _ in 0..1000 {
-            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad };
+            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad, rate_rad_s: 0.0 };
             state = steering.step(state, &input, 0.005);
         }
         assert!((state.rest_rad.to_degrees() - 25.0).abs() < 1e-9);
@@ -95,7 +99,11 @@ mod tests {
         let steering = Steering::new(&machine);
         let mut state = SteeringState::default();
         for _ in 0..1000 {
-            state = steering.step(state, &SteeringInput { opening: 1.0, angle_rad: 0.0 }, 0.005);
+            state = steering.step(
+                state,
+                &SteeringInput { opening: 1.0, angle_rad: 0.0, rate_rad_s: 0.0 },
+                0.005,
+            );
         }
         let torque_nm = state.rest_rad * steering.stiffness_nm();
         assert!((torque_nm - machine.articulation.torque_max_nm).abs() < 1e-6);

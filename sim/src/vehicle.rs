@@ -112,6 +112,7 @@ impl Vehicle {
             let input = SteeringInput {
                 opening: actuation.steer_opening[i],
                 angle_rad: motion[i].angle_rad,
+                rate_rad_s: motion[i].rate_rad_s,
             };
             let before = self.memory.joints[i];
             let after = self.steering.step(before, &input, dt_s);

@@ -174,6 +174,7 @@ fn blocks_alone_reproduce_the_whole() {
             let input = SteeringInput {
                 opening: actuation.steer_opening[i],
                 angle_rad: before.joint_rad[i],
+                rate_rad_s: before.joint_rate_rad_s[i],
             };
             *joint = steering.step(*joint, &input, dt_s);
             // The joint follows its rest to what the torque between them twists.

@@ -188,6 +188,43 @@ fn nodes_may_send_at_the_instant_time_has_reached_in_any_order() {
 }
 
 #[test]
+fn a_frame_is_there_at_the_very_end_of_its_last_bit() {
+    let mut bus = VirtualBus::new(Bitrate::MBIT_1);
+    let [node, listener] = ["node", "listener"].map(|name| bus.attach(name));
+    bus.send(node, SimTime::ZERO, &frame(0, &[])); // 50 bits
+    bus.advance(SimTime::from_nanos(49_999));
+    assert_eq!(bus.receive(listener), None);
+    bus.advance(SimTime::from_micros(50));
+    assert_eq!(bus.receive(listener).unwrap().at, SimTime::from_micros(50));
+}
+
+#[test]
+fn nothing_is_sent_in_the_past() {
+    let mut bus = VirtualBus::new(Bitrate::MBIT_1);
+    let [node, listener] = ["node", "listener"].map(|name| bus.attach(name));
+    bus.advance(SimTime::from_millis(10));
+    bus.send(node, SimTime::from_millis(3), &frame(0, &[]));
+    bus.advance(SimTime::from_millis(9)); // nor does time go back
+    assert_eq!((bus.now(), bus.receive(listener)), (SimTime::from_millis(10), None));
+    bus.advance(SimTime::from_millis(11));
+    assert_eq!(bus.receive(listener).unwrap().at, SimTime::from_micros(10_050));
+}
+
+#[test]
+fn two_losers_with_one_identifier_have_not_collided_yet() {
+    let mut bus = VirtualBus::new(Bitrate::MBIT_1);
+    let [a, b, urgent] = ["a", "b", "urgent"].map(|name| bus.attach(name));
+    for (node, id) in [(a, 0x200), (b, 0x200), (urgent, 0)] {
+        bus.send(node, SimTime::ZERO, &frame(id, &[]));
+    }
+    bus.advance(SimTime::from_millis(1));
+    let collisions: Vec<_> = bus.collisions().collect();
+    assert_eq!(collisions.len(), 1);
+    assert_eq!((collisions[0].nodes, collisions[0].count), ((a, b), 1));
+    assert_eq!(collisions[0].first_at, SimTime::from_micros(50 + 3));
+}
+
+#[test]
 fn two_nodes_with_one_identifier_are_reported() {
     let mut bus = VirtualBus::new(Bitrate::MBIT_1);
     let [a, b, listener] = ["a", "b", "listener"].map(|name| bus.attach(name));

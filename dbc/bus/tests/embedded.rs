@@ -129,6 +129,19 @@ fn every_frame_leaves_their_driver_once() {
 }
 
 #[test]
+fn frames_of_one_identifier_leave_in_the_order_sent() {
+    let mut bus = Driver::new(Mailboxes::default());
+    let numbered = |n: u8| Frame::new(CanId::Standard(0x100), &[n]).unwrap();
+    for n in 0..10 {
+        bus.send(SimTime::ZERO, &numbered(n)).unwrap();
+    }
+    for n in 0..10 {
+        assert_eq!(bus.driver().leave(), Some(CanFrame::Data(numbered(n))));
+        bus.flush();
+    }
+}
+
+#[test]
 fn a_driver_that_takes_nothing_is_an_error_before_anything_is_lost() {
     let mut bus = Driver::new(Mailboxes::default());
     let mut sent = 0;

@@ -59,13 +59,12 @@ impl Node {
         }
     }
 
-    /// Queues a frame behind the others; it is never ready before them.
+    /// Queues a frame behind the others.
     pub(super) fn queue(&mut self, ready_ns: u64, frame: Frame) {
         if self.transmit.len() >= QUEUE_FRAMES {
             self.counters.transmit_overflows += 1;
             return;
         }
-        let ready_ns = self.transmit.back().map_or(ready_ns, |last| last.ready_ns.max(ready_ns));
         self.transmit.push_back(Pending { ready_ns, priority: priority(frame.id()), frame });
     }
 

@@ -1,1 +1,38 @@
-//! Closed-loop scenarios: what to run, what must hold, and the runner.
+//! Closed-loop scenarios: what to run, what must hold, the runner in lockstep, and the picture.
+//!
+//! A [`Scenario`] is a TOML file. [`Lockstep`] runs it on a virtual bus; a recorded candump log of
+//! any other run reads as the same [`Trace`]. Each [`Expectation`] is physical and is judged on
+//! the trace, so it holds on a real bus too. [`Report`] and [`Picture`] show what came of it.
+#![forbid(unsafe_code)]
+
+mod builtin;
+mod decode;
+mod digest;
+mod error;
+pub mod expect;
+mod finding;
+mod lockstep;
+mod picture;
+mod recording;
+mod report;
+mod scenario;
+mod series;
+mod setup;
+pub mod trace;
+mod truth;
+
+pub use builtin::BUILTIN;
+pub use decode::Decoder;
+pub use digest::sha256;
+pub use error::ScenarioError;
+pub use expect::{Evidence, Expectation};
+pub use finding::{Bound, Finding};
+pub use lockstep::{Lockstep, RunError, STEPS_PER_TICK, TickCost};
+pub use picture::Picture;
+pub use recording::Recording;
+pub use report::{Cost, Report};
+pub use scenario::{Event, Ground, Node, Scenario, Script};
+pub use series::{Sample, Series};
+pub use setup::Setup;
+pub use trace::Trace;
+pub use truth::Truth;

@@ -1,2 +1,62 @@
-//! Placeholder until the room is filled.
-fn main() {}
+//! `xt28`: the one command people type. One file a subcommand.
+#![forbid(unsafe_code)]
+// A binary is the edge of the house: it prints, reads clocks and arguments, and exits.
+#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+
+mod artefacts;
+mod config;
+mod pace;
+mod processes;
+mod run;
+mod scenarios;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// A bench for the Xt28: its two ECUs and a physics vehicle on a CAN bus, and what must hold.
+///
+/// Without a command: runs `straight-25m` and leaves a candump log and a picture in out/.
+#[derive(Parser)]
+#[command(version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(run::Run),
+    Scenarios(scenarios::Scenarios),
+    Config(config::Config),
+}
+
+/// What a command ends with, when nothing went wrong on the way.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    /// All is as wanted: exit status 0.
+    Positive,
+    /// Something measured is not as wanted: exit status 1.
+    Negative,
+}
+
+/// What went wrong on the way, in one line: exit status 2.
+type Failure = Box<dyn Error>;
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        None => run::Run::demo().execute(),
+        Some(Command::Run(run)) => run.execute(),
+        Some(Command::Scenarios(scenarios)) => scenarios.execute(),
+        Some(Command::Config(config)) => config.execute(),
+    };
+    match outcome {
+        Ok(Verdict::Positive) => ExitCode::SUCCESS,
+        Ok(Verdict::Negative) => ExitCode::from(1),
+        Err(failure) => {
+            eprintln!("xt28: {failure}");
+            ExitCode::from(2)
+        }
+    }
+}

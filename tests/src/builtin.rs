@@ -1,0 +1,108 @@
+//! The scenarios that come with the bench, by name.
+
+use std::io;
+use std::path::Path;
+
+use crate::{Scenario, ScenarioError};
+
+macro_rules! texts {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../scenarios/", $name, ".toml")))),*]
+    };
+}
+
+/// Name and text of every built-in scenario, in the order a reader should meet them.
+pub const BUILTIN: &[(&str, &str)] = texts!(
+    "straight-25m",
+    "turn-left",
+    "turn-right",
+    "s-turn",
+    "arm-steps",
+    "ramp",
+    "command-loss"
+);
+
+/// Name and text of the scripts that they play.
+const SCRIPTS: &[(&str, &str)] = texts!("s-turn.script", "arm-steps.script");
+
+/// The text of a built-in script.
+fn script(path: &Path) -> io::Result<String> {
+    let named = |name: &str| path.to_str() == Some(&format!("{name}.toml"));
+    let found = SCRIPTS.iter().find(|(name, _)| named(name));
+    found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| io::ErrorKind::NotFound.into())
+}
+
+impl Scenario {
+    /// The scenario `wanted`: a built-in name, or a path when it ends in `.toml` or has a `/`.
+    ///
+    /// # Errors
+    /// [`ScenarioError`]; an unknown name is answered with the nearest one and the whole list.
+    pub fn find(wanted: &str) -> Result<Self, ScenarioError> {
+        if wanted.ends_with(".toml") || wanted.contains('/') {
+            return Self::load(Path::new(wanted));
+        }
+        match BUILTIN.iter().find(|(name, _)| *name == wanted) {
+            Some((name, text)) => Self::parse(text, Path::new(&format!("{name}.toml")), script),
+            None => Err(ScenarioError::Unknown {
+                name: wanted.to_owned(),
+                nearest: nearest(wanted),
+                known: BUILTIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
+            }),
+        }
+    }
+}
+
+/// The built-in name with the fewest edits from `wanted`, if those are few enough to be a slip.
+fn nearest(wanted: &str) -> Option<&'static str> {
+    BUILTIN
+        .iter()
+        .map(|&(name, _)| (edits(wanted, name), name))
+        .filter(|&(edits, name)| edits <= name.len() / 2)
+        .min()
+        .map(|(_, name)| name)
+}
+
+/// Levenshtein distance, by the usual row of costs.
+fn edits(a: &str, b: &str) -> usize {
+    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.chars().enumerate() {
+            let replace = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.chars().count()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_scenario_parses_and_expects_something() {
+        for (name, _) in BUILTIN {
+            let scenario = Scenario::find(name).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(scenario.name, *name);
+            assert!(!scenario.expectations.is_empty(), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_slip_of_the_pen_is_answered_with_the_nearest_name() {
+        let error = Scenario::find("straigt-25").unwrap_err().to_string();
+        assert!(error.contains("did you mean `straight-25m`?"), "{error}");
+        assert!(error.contains("command-loss"), "{error}");
+        let error = Scenario::find("xyz").unwrap_err().to_string();
+        assert!(!error.contains("did you mean"), "{error}");
+        assert_eq!(edits("kitten", "sitting"), 3);
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = Scenario::find("no/such.toml").unwrap_err().to_string();
+        assert!(error.starts_with("no/such.toml: cannot read the scenario"), "{error}");
+    }
+}

@@ -1,0 +1,74 @@
+//! Why a scenario did not load or did not run: one line with file, line and remedy.
+
+use std::path::{Path, PathBuf};
+
+/// Why a scenario was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file could not be read.
+    #[error(
+        "{path}: cannot read the scenario: {source}; give a scenario file or one of `xt28 scenarios`"
+    )]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The text is no scenario: bad TOML, an unknown key, a value of another type.
+    #[error("{path}:{line}: {problem}; keys carry their unit, as duration_s and height_m do")]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there, with the keys known there.
+        problem: String,
+    },
+    /// A value no run can have.
+    #[error("{path}:{line}: {problem}")]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The key, its value and what it must be.
+        problem: String,
+    },
+    /// The script that the policy names could not be read.
+    #[error("{policy_at}: cannot read {script}: {source}; a script lies beside its scenario file")]
+    Script {
+        /// File and line of the policy.
+        policy_at: String,
+        /// The script's file.
+        script: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// No built-in scenario has this name.
+    #[error("no scenario `{name}`{}; the built-in ones are {known}, or give a file ending in .toml", suggest(.nearest))]
+    Unknown {
+        /// The name given.
+        name: String,
+        /// The built-in name most like it.
+        nearest: Option<&'static str>,
+        /// All built-in names.
+        known: String,
+    },
+}
+
+impl ScenarioError {
+    /// From what the TOML reader said of `text`.
+    pub(crate) fn from_toml(error: &toml::de::Error, text: &str, path: &Path) -> Self {
+        let start = error.span().map_or(0, |span| span.start.min(text.len()));
+        Self::Parse {
+            path: path.to_owned(),
+            line: text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1,
+            problem: error.message().replace('\n', " "),
+        }
+    }
+}
+
+fn suggest(nearest: &Option<&'static str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(": did you mean `{name}`?"))
+}

@@ -1,0 +1,98 @@
+//! What must hold of a run, each judged on the recorded bus alone (and on the truth where given).
+
+mod arm_speed;
+mod attitude;
+mod ecu_state;
+mod pose;
+mod rear_joint;
+mod standstill;
+mod weight;
+
+use serde::Deserialize;
+use xt28_machine::Machine;
+
+use crate::{Bound, Finding, Scenario, Trace, Truth};
+
+pub use arm_speed::ArmSpeed;
+pub use attitude::RollPeak;
+pub use ecu_state::{Ecu, ReachesState};
+pub use pose::ReachesPose;
+pub use rear_joint::RearFollows;
+pub use standstill::StandsStill;
+pub use weight::CarriesWeight;
+
+/// One physical expectation, as a scenario file states it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Expectation {
+    /// Ends at a pose.
+    ReachesPose(ReachesPose),
+    /// Ends standing.
+    StandsStill(StandsStill),
+    /// The wheels together carry the machine's weight.
+    CarriesWeight(CarriesWeight),
+    /// Arms move at the cap of their valves.
+    ArmSpeed(ArmSpeed),
+    /// The rear joint follows the front one.
+    RearFollows(RearFollows),
+    /// The greatest roll lies between two bounds.
+    RollPeak(RollPeak),
+    /// An ECU is in a state soon after commands stop.
+    ReachesState(ReachesState),
+}
+
+/// A recorded run and what it ran: all that an expectation may look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence<'a> {
+    /// The scenario that ran.
+    pub scenario: &'a Scenario,
+    /// The machine it ran on.
+    pub machine: &'a Machine,
+    /// What the bus said.
+    pub trace: &'a Trace,
+    /// What was true, where the bench can know it.
+    pub truth: Option<&'a Truth>,
+}
+
+impl Expectation {
+    /// What this expectation found in `evidence`: at least one finding.
+    #[must_use]
+    pub fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
+        match self {
+            Self::ReachesPose(e) => e.judge(evidence),
+            Self::StandsStill(e) => e.judge(evidence),
+            Self::CarriesWeight(e) => e.judge(evidence),
+            Self::ArmSpeed(e) => e.judge(evidence),
+            Self::RearFollows(e) => e.judge(evidence),
+            Self::RollPeak(e) => e.judge(evidence),
+            Self::ReachesState(e) => e.judge(evidence),
+        }
+    }
+}
+
+/// All findings on `evidence`: that the log is whole, then each expectation's in the file's order.
+#[must_use]
+pub fn judge(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let mut findings = whole(evidence);
+    for expectation in &evidence.scenario.expectations {
+        findings.extend(expectation.judge(evidence));
+    }
+    findings
+}
+
+/// Every run must fill its time with frames that decode.
+fn whole(evidence: &Evidence<'_>) -> Vec<Finding> {
+    let Evidence { scenario, trace, .. } = evidence;
+    #[allow(clippy::cast_precision_loss)]
+    let faults = trace.faults.len() as f64;
+    let first = trace
+        .faults
+        .first()
+        .map_or_else(String::new, |fault| format!("first at {:.3} s: {}", fault.at_s, fault.what));
+    // The last tick's frames end within the tick.
+    let length = Bound::Near { value: scenario.duration_s, tolerance: 0.5 };
+    vec![
+        Finding::of("log covers the run", trace.end_s, length, "s"),
+        Finding::of("frames that do not decode", faults, Bound::AtMost(0.0), "").noting(first),
+    ]
+}

@@ -1,0 +1,50 @@
+//! Ends standing: neither the wheels nor the antenna move over the last seconds.
+
+use serde::Deserialize;
+use xt28_machine::PerWheel;
+
+use super::Evidence;
+use crate::series::slope;
+use crate::{Bound, Finding};
+
+/// Stands still at the end.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StandsStill {
+    /// Greatest speed that counts as standing, m/s.
+    pub below_m_s: f64,
+    /// Over this last span, s.
+    #[serde(default = "two_seconds")]
+    pub over_s: f64,
+}
+
+fn two_seconds() -> f64 {
+    2.0
+}
+
+impl StandsStill {
+    pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
+        let Evidence { trace, machine, .. } = evidence;
+        let wanted = Bound::AtMost(self.below_m_s);
+        let from_s = trace.end_s - self.over_s;
+        let wheels = trace.wheel_speed_rad_s.between(from_s, trace.end_s);
+        let fastest_rad_s = wheels.iter().map(|s| s.value.map(f64::abs).mean()).reduce(f64::max);
+        let what = "wheel speed at the end";
+        let mut findings = vec![match fastest_rad_s {
+            Some(rad_s) => Finding::of(what, rad_s * machine.wheels.radius_m, wanted, "m/s"),
+            None => Finding::missing(what, wanted, "m/s", "no WheelSpeedSigned at the end"),
+        }];
+        // Without a gateway there are no fixes; the wheels then speak alone.
+        let fixes = trace.antenna_m.between(from_s, trace.end_s);
+        if let (Some(east), Some(north)) = (slope(fixes, |p| p[0]), slope(fixes, |p| p[1])) {
+            let drift_m_s = east.hypot(north);
+            findings.push(Finding::of("antenna drift at the end", drift_m_s, wanted, "m/s"));
+        }
+        findings
+    }
+}
+
+/// Mean speed of the wheels over ground, m/s.
+pub(super) fn mean_speed_m_s(wheel_speed_rad_s: &PerWheel<f64>, radius_m: f64) -> f64 {
+    wheel_speed_rad_s.mean() * radius_m
+}

@@ -1,0 +1,248 @@
+//! A scenario file: the machine, the ground, who drives, for how long, and what must hold.
+
+use std::path::{Path, PathBuf};
+use std::{fmt, io};
+
+use serde::Deserialize;
+use xt28_sim::Ramp;
+
+use crate::{Expectation, ScenarioError};
+
+/// One scenario as its TOML file states it. Units are in the keys.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// The file's stem; not a key.
+    #[serde(skip)]
+    pub name: String,
+    /// One line that says what is shown.
+    pub title: String,
+    /// Machine file, relative to the scenario file; the built-in machine when left out.
+    pub machine: Option<PathBuf>,
+    /// The ground.
+    #[serde(default)]
+    pub terrain: Ground,
+    /// What the gateway drives with, as its `--policy` takes it. A `script:FILE` lies beside the
+    /// scenario file.
+    pub policy: String,
+    /// File and line of the policy, for messages; not a key.
+    #[serde(skip)]
+    pub policy_at: String,
+    /// The script that the policy names; not a key.
+    #[serde(skip)]
+    pub script: Option<Script>,
+    /// Seed of all noise.
+    #[serde(default)]
+    pub seed: u64,
+    /// Length of the run, s.
+    pub duration_s: f64,
+    /// What befalls the bench on the way.
+    #[serde(default, rename = "event")]
+    pub events: Vec<Event>,
+    /// What must hold.
+    #[serde(default, rename = "expect")]
+    pub expectations: Vec<Expectation>,
+}
+
+/// Text of a script policy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Script {
+    /// Where it was found: a path, or a name among the built-in ones.
+    pub path: PathBuf,
+    /// Its TOML.
+    pub text: String,
+}
+
+/// The ground a scenario runs on.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ground {
+    /// Level.
+    #[default]
+    Flat,
+    /// Level with one ramp.
+    Ramp(Ramp),
+}
+
+/// Something that befalls the bench at an instant.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Event {
+    /// When, s from the start.
+    pub at_s: f64,
+    /// The program that dies without a word.
+    pub kill: Node,
+}
+
+/// A program on the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Node {
+    /// The gateway.
+    Gateway,
+    /// The emulator of the two ECUs.
+    Emulator,
+}
+
+impl fmt::Display for Node {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gateway => "gateway",
+            Self::Emulator => "emulator",
+        })
+    }
+}
+
+/// The longest run a scenario may ask for, s.
+const DURATION_MAX_S: f64 = 3_600.0;
+
+impl Scenario {
+    /// A scenario from a file, and its script from the file beside it.
+    ///
+    /// # Errors
+    /// [`ScenarioError`], with file, line and remedy.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ScenarioError::Read { path: path.to_owned(), source })?;
+        Self::parse(&text, path, |script| std::fs::read_to_string(script))
+    }
+
+    /// A scenario from TOML text; `path` gives its name and stands in errors, `read` gets the text
+    /// of a script.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Parse`], [`ScenarioError::Value`] or [`ScenarioError::Script`].
+    pub fn parse(
+        text: &str,
+        path: &Path,
+        read: impl FnOnce(&Path) -> io::Result<String>,
+    ) -> Result<Self, ScenarioError> {
+        let mut scenario: Self =
+            toml::from_str(text).map_err(|error| ScenarioError::from_toml(&error, text, path))?;
+        scenario.check(text, path)?;
+        scenario.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        scenario.policy_at = format!("{}:{}", path.display(), line_of(text, "policy"));
+        let beside = path.parent().unwrap_or(Path::new(""));
+        if let Some(machine) = &mut scenario.machine {
+            *machine = beside.join(&machine);
+        }
+        if let Some(file) = scenario.policy.strip_prefix("script:") {
+            let script = beside.join(file);
+            let text = read(&script).map_err(|source| ScenarioError::Script {
+                policy_at: scenario.policy_at.clone(),
+                script: script.clone(),
+                source,
+            })?;
+            scenario.script = Some(Script { path: script, text });
+        }
+        Ok(scenario)
+    }
+
+    fn check(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
+        let refuse = |key: &'static str, problem: String| {
+            let (path, line) = (path.to_owned(), line_of(text, key));
+            Err(ScenarioError::Value { path, line, problem: format!("{key} {problem}") })
+        };
+        if !(self.duration_s > 0.0 && self.duration_s <= DURATION_MAX_S) {
+            let problem = format!("= {} must be above 0 and at most 3600", self.duration_s);
+            return refuse("duration_s", problem);
+        }
+        if let Some(event) = self.events.iter().find(|e| !(0.0..=self.duration_s).contains(&e.at_s))
+        {
+            let problem =
+                format!("= {} lies outside the run, 0 to {}", event.at_s, self.duration_s);
+            return refuse("at_s", problem);
+        }
+        if let Ground::Ramp(ramp) = &self.terrain
+            && let Err(problem) = ramp.check()
+        {
+            return refuse("[terrain.ramp]", format!(": {problem}"));
+        }
+        Ok(())
+    }
+}
+
+/// The line, from 1, that begins with `key`; 1 if none does.
+fn line_of(text: &str, key: &str) -> usize {
+    text.lines().position(|line| line.trim_start().starts_with(key)).map_or(1, |index| index + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = r#"
+title = "Over a ramp"
+policy = "goto:15,0,0"
+duration_s = 30
+
+[terrain.ramp]
+x_m = [4, 7, 8.5, 11.5]
+height_m = 0.3
+y_min_m = -1.9
+y_max_m = -0.5
+
+[[event]]
+at_s = 5.0
+kill = "gateway"
+
+[[expect]]
+stands-still = { below_m_s = 0.02 }
+"#;
+
+    fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+        Scenario::parse(text, Path::new("a/ramp.toml"), |script| match script.to_str() {
+            Some("a/steps.toml") => Ok("[[command]]".to_owned()),
+            _ => Err(io::ErrorKind::NotFound.into()),
+        })
+    }
+
+    fn refusal(from: &str, to: &str) -> String {
+        assert!(GOOD.contains(from));
+        let text = GOOD.replace(from, to);
+        parse(&text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn reads_every_part() {
+        let scenario = parse(GOOD).unwrap();
+        assert_eq!(scenario.name, "ramp");
+        assert!(matches!(&scenario.terrain, Ground::Ramp(ramp) if ramp.height_m == 0.3));
+        assert_eq!(scenario.events, [Event { at_s: 5.0, kill: Node::Gateway }]);
+        assert_eq!(scenario.expectations.len(), 1);
+    }
+
+    #[test]
+    fn a_script_is_read_from_beside_the_scenario() {
+        let scenario = parse(&GOOD.replace("goto:15,0,0", "script:steps.toml")).unwrap();
+        assert_eq!(scenario.script.unwrap().text, "[[command]]");
+        assert_eq!(scenario.policy_at, "a/ramp.toml:3");
+    }
+
+    #[test]
+    fn a_bad_key_unit_or_value_is_one_line_with_file_line_and_remedy() {
+        let cases = [
+            (
+                "duration_s",
+                "duration_ms",
+                "a/ramp.toml:4: unknown field `duration_ms`",
+                "duration_s",
+            ),
+            ("height_m", "height_mm", "a/ramp.toml:8: unknown field `height_mm`", "height_m"),
+            ("\"gateway\"", "\"cab\"", "a/ramp.toml:14: unknown variant `cab`", "emulator"),
+            ("stands-still", "stand-still", "a/ramp.toml:17: unknown variant", "stands-still"),
+            ("below_m_s", "below_km_h", "a/ramp.toml:17: unknown field `below_km_h`", "below_m_s"),
+            ("= 30", "= -1", "a/ramp.toml:4: duration_s = -1", "above 0"),
+            ("= 30", "= nan", "a/ramp.toml:4: duration_s = NaN", "above 0"),
+            ("at_s = 5.0", "at_s = 31", "a/ramp.toml:13: at_s = 31", "0 to 30"),
+            ("7, 8.5", "9, 8.5", "a/ramp.toml:6: [terrain.ramp]", "x_m must grow"),
+            ("goto:15,0,0", "script:no.toml", "a/ramp.toml:3: cannot read", "a/no.toml"),
+        ];
+        for (from, to, starts, contains) in cases {
+            let error = refusal(from, to);
+            assert!(error.starts_with(starts), "{error}");
+            assert!(error.contains(contains), "{error}");
+            assert!(!error.contains('\n'), "{error}");
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! A scenario made ready to run: its machine loaded, its ground built, its seed settled.
+
+use std::path::PathBuf;
+
+use gateway::policy::{self, Policy, SpecError};
+use xt28_machine::{Machine, MachineError};
+use xt28_sim::Terrain;
+
+use crate::trace::Trace;
+use crate::{Evidence, Finding, Ground, Scenario, Script, Truth};
+
+/// All that a run is made of, on either kind of bus.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The scenario.
+    pub scenario: Scenario,
+    /// The machine it names.
+    pub machine: Machine,
+    /// Seed of all noise.
+    pub seed: u64,
+}
+
+impl Setup {
+    /// Loads what `scenario` names; `seed` overrides its own.
+    ///
+    /// # Errors
+    /// The machine file is refused.
+    pub fn new(scenario: Scenario, seed: Option<u64>) -> Result<Self, MachineError> {
+        let machine = match &scenario.machine {
+            Some(path) => Machine::load(path)?,
+            None => Machine::xt28(),
+        };
+        let seed = seed.unwrap_or(scenario.seed);
+        Ok(Self { scenario, machine, seed })
+    }
+
+    /// The policy that drives.
+    ///
+    /// # Errors
+    /// The policy is none, or its script is refused.
+    pub fn policy(&self) -> Result<Box<dyn Policy>, SpecError> {
+        match &self.scenario.script {
+            Some(Script { path, text }) => {
+                Ok(Box::new(policy::Script::parse(text, path).map_err(SpecError::from)?))
+            }
+            None => policy::from_spec(&self.scenario.policy, &self.machine),
+        }
+    }
+
+    /// The ground as the plant takes it.
+    #[must_use]
+    pub fn terrain(&self) -> Terrain {
+        match &self.scenario.terrain {
+            Ground::Flat => Terrain::Flat,
+            Ground::Ramp(ramp) => Terrain::ramp(ramp),
+        }
+    }
+
+    /// The machine file, where one is named; otherwise the built-in machine runs.
+    #[must_use]
+    pub fn machine_file(&self) -> Option<&PathBuf> {
+        self.scenario.machine.as_ref()
+    }
+
+    /// What the scenario's expectations find in a recorded run.
+    #[must_use]
+    pub fn judge(&self, trace: &Trace, truth: Option<&Truth>) -> Vec<Finding> {
+        crate::expect::judge(&Evidence {
+            scenario: &self.scenario,
+            machine: &self.machine,
+            trace,
+            truth,
+        })
+    }
+}

@@ -1,0 +1,196 @@
+//! Each expectation on traces made for it: one that holds, and the nearest ones that do not.
+
+use std::io;
+use std::path::Path;
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_scenarios::trace::{Attitude, DriveCommand, EcuState, Motion};
+use xt28_scenarios::{Evidence, Finding, Scenario, Trace};
+
+/// What the one expectation `toml` finds in `trace`.
+fn judge(toml: &str, trace: &Trace) -> Vec<Finding> {
+    let text = format!("title = \"t\"\npolicy = \"hold\"\nduration_s = 10\n[[expect]]\n{toml}\n");
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    let scenario = Scenario::parse(&text, Path::new("t.toml"), none).expect("a good scenario");
+    let machine = Machine::xt28();
+    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth: None };
+    scenario.expectations[0].judge(&evidence)
+}
+
+fn verdicts(toml: &str, trace: &Trace) -> Vec<bool> {
+    judge(toml, trace).iter().map(Finding::passed).collect()
+}
+
+/// Ticks of 10 ms over ten seconds.
+fn ticks() -> impl Iterator<Item = f64> {
+    (0..1000).map(|tick| f64::from(tick) * 0.01)
+}
+
+fn trace(fill: impl Fn(&mut Trace, f64)) -> Trace {
+    let mut trace = Trace::default();
+    for at_s in ticks() {
+        fill(&mut trace, at_s);
+        trace.end_s = at_s;
+    }
+    trace
+}
+
+fn standing_at(x_m: f64, y_m: f64, heading_deg: f64) -> Trace {
+    trace(|trace, at_s| {
+        // The antenna is 0.30 m behind the front axle.
+        let (sin, cos) = heading_deg.to_radians().sin_cos();
+        trace.antenna_m.push(at_s, [x_m - 0.3 * cos, y_m - 0.3 * sin]);
+        let heading_rad = heading_deg.to_radians();
+        trace.motion.push(at_s, Motion { heading_rad, ..Motion::default() });
+        trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(0.0));
+    })
+}
+
+#[test]
+fn a_pose_is_reached_within_distance_and_heading() {
+    let target = "reaches-pose = { x_m = 24.5, y_m = 4.98, heading_deg = 179, within_m = 0.3, within_deg = 9 }";
+    assert_eq!(verdicts(target, &standing_at(24.3, 5.1, 179.0)), [true, true]);
+    assert_eq!(verdicts(target, &standing_at(24.3, 5.1, -174.0)), [true, true]);
+    assert_eq!(verdicts(target, &standing_at(24.3, 5.3, 179.0)), [false, true]);
+    assert_eq!(verdicts(target, &standing_at(24.5, 5.0, 169.0)), [true, false]);
+    assert_eq!(verdicts(target, &Trace::default()), [false, false]);
+}
+
+#[test]
+fn standing_means_wheels_and_antenna() {
+    let expect = "stands-still = { below_m_s = 0.02 }";
+    assert_eq!(verdicts(expect, &standing_at(1.0, 2.0, 0.0)), [true, true]);
+    let creeping = trace(|trace, at_s| trace.antenna_m.push(at_s, [0.03 * at_s, 0.0]));
+    assert_eq!(verdicts(expect, &creeping), [false, false], "no wheel frames, and a drift");
+    let spinning = trace(|trace, at_s| {
+        // Wheels that turn against each other do not stand, though their mean does.
+        let speed = PerWheel::from_fn(|wheel| 0.05 * wheel.side().sign());
+        trace.wheel_speed_rad_s.push(at_s, speed);
+    });
+    assert_eq!(verdicts(expect, &spinning), [false]);
+    let stopped = trace(|trace, at_s| {
+        let speed = if at_s < 7.9 { 1.0 } else { 0.0 };
+        trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(speed));
+    });
+    assert_eq!(verdicts(expect, &stopped), [true]);
+}
+
+/// A machine at `stroke_m` whose cylinders carry what lies above them, times `factor`.
+fn standing_with_load(stroke_m: f64, factor: f64) -> Trace {
+    let machine = Machine::xt28();
+    let m = &machine.masses;
+    let frames_kg = m.front_frame_kg + m.middle_frame_kg + m.rear_frame_kg;
+    // Half of each arm hangs on its pivot.
+    let sprung_n = (frames_kg + 3.0 * m.arm_kg) * GRAVITY_M_S2;
+    let load_n = sprung_n / 6.0 / machine.linkage().at_stroke(stroke_m).force_ratio;
+    trace(|trace, at_s| {
+        trace.stroke_m.push(at_s, PerWheel::splat(stroke_m));
+        trace.cylinder_load_n.push(at_s, PerWheel::splat(load_n * factor));
+    })
+}
+
+#[test]
+fn the_weight_is_carried_at_any_stroke() {
+    let expect = "carries-weight = { from_s = 1, to_s = 2, within_percent = 1 }";
+    for stroke_m in [0.0, 0.17, 0.25, 0.5] {
+        let findings = judge(expect, &standing_with_load(stroke_m, 1.0));
+        let sum_kn = findings[0].measured.unwrap();
+        assert!((sum_kn - 166.77).abs() < 0.01, "{stroke_m}: {sum_kn}");
+    }
+    assert_eq!(verdicts(expect, &standing_with_load(0.17, 1.02)), [false]);
+    assert_eq!(verdicts(expect, &standing_with_load(0.17, 0.98)), [false]);
+    assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+/// Arms that go from 0 to 0.25 m at `speed_m_s` once told so at 1 s; strokes in whole mm.
+fn stepping(speed_m_s: f64) -> Trace {
+    trace(|trace, at_s| {
+        let target_m = if at_s < 1.0 { 0.0 } else { 0.25 };
+        let stroke_m = (speed_m_s * (at_s - 1.0)).clamp(0.0, 0.25);
+        let whole_mm = (stroke_m * 1e3).floor() * 1e-3;
+        trace.stroke_target_m.push(at_s, PerWheel::splat(Some(target_m)));
+        trace.stroke_m.push(at_s, PerWheel::splat(whole_mm));
+    })
+}
+
+#[test]
+fn arms_move_at_the_cap_of_their_valves() {
+    let expect = "arm-speed = { wheels = [\"FR\", \"BL\"], within_percent = 5 }";
+    let findings = judge(expect, &stepping(0.3 * 0.212));
+    assert!((findings[0].measured.unwrap() - 0.0636).abs() < 3e-4, "{findings:?}");
+    assert!(findings[0].passed());
+    assert_eq!(verdicts(expect, &stepping(0.06)), [false]);
+    assert_eq!(verdicts(expect, &stepping(0.07)), [false]);
+    assert_eq!(verdicts(expect, &stepping(0.0)), [false], "stuck arms are slow, not missing");
+    assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+/// A bend with the front joint at 10 degrees and the rear at `ratio` of it, driven at `speed_m_s`.
+fn bend(ratio: f64, speed_m_s: f64) -> Trace {
+    trace(|trace, at_s| {
+        let front_rad = 10_f64.to_radians() * (at_s / 2.0).min(1.0);
+        trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(speed_m_s / 0.74));
+        trace.joint_rad.push(at_s, [front_rad, ratio * front_rad]);
+    })
+}
+
+#[test]
+fn the_rear_joint_follows_where_it_can() {
+    let expect = "rear-follows = { within = 0.02 }";
+    assert_eq!(verdicts(expect, &bend(0.56, 0.5)), [true]);
+    assert_eq!(verdicts(expect, &bend(0.53, 0.5)), [false]);
+    assert_eq!(verdicts(expect, &bend(1.0, 0.5)), [false]);
+    let slow = judge(expect, &bend(0.56, 0.05));
+    assert_eq!(slow[0].measured, None, "below the speed threshold nothing is said");
+}
+
+#[test]
+fn the_roll_peaks_between_its_bounds_with_its_sign() {
+    let expect = "roll-peak = { from_deg = 1, to_deg = 6, end_within_deg = 0.5 }";
+    let rolling = |peak_deg: f64, end_deg: f64| {
+        trace(|trace, at_s| {
+            let roll_deg = if (4.0..5.0).contains(&at_s) { peak_deg } else { end_deg };
+            let roll_rad = roll_deg.to_radians();
+            trace.attitude.push(at_s, Attitude { roll_rad, pitch_rad: 0.0 });
+        })
+    };
+    assert_eq!(verdicts(expect, &rolling(3.0, 0.2)), [true, true]);
+    assert_eq!(verdicts(expect, &rolling(-3.0, 0.2)), [false, true]);
+    assert_eq!(verdicts(expect, &rolling(0.5, 0.2)), [false, true]);
+    assert_eq!(verdicts(expect, &rolling(7.0, -0.6)), [false, false]);
+}
+
+/// Commands until 5 s; the state turns to safe stop `after_s` the first that is missing, and to
+/// `end` at 9 s.
+fn silenced(after_s: f64, end: EcuState) -> Trace {
+    trace(|trace, at_s| {
+        if at_s < 4.995 {
+            trace.drive_target.push(at_s + 0.0002, DriveCommand::default());
+        }
+        let state = match at_s {
+            _ if at_s < 5.0 + after_s - 0.005 => EcuState::Active,
+            _ if at_s < 9.0 => EcuState::SafeStop,
+            _ => end,
+        };
+        trace.drive_state.push(at_s + 0.0015, state);
+    })
+}
+
+#[test]
+fn an_ecu_stops_within_its_periods_and_stays_stopped() {
+    let expect = "reaches-state = { ecu = \"drive\", state = \"safe-stop\", within_periods = 3 }";
+    let found = judge(expect, &silenced(0.03, EcuState::SafeStop));
+    assert_eq!(found[0].measured, Some(3.0));
+    assert!(found[0].passed());
+    assert_eq!(verdicts(expect, &silenced(0.04, EcuState::SafeStop)), [false]);
+    assert_eq!(verdicts(expect, &silenced(0.03, EcuState::Active)), [false], "it woke up again");
+    assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+#[test]
+fn every_wheel_name_is_known() {
+    for wheel in Wheel::ALL {
+        let expect = format!("arm-speed = {{ wheels = [\"{wheel}\"], within_percent = 5 }}");
+        assert_eq!(judge(&expect, &Trace::default()).len(), 1);
+    }
+}

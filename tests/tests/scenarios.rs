@@ -1,0 +1,70 @@
+//! Every built-in scenario runs on the virtual bus, closed loop, and all it expects holds.
+
+use std::io;
+use std::time::Duration;
+
+use xt28_machine::SimTime;
+use xt28_scenarios::{Finding, Lockstep, Recording, Report, Scenario, Setup};
+
+fn setup(name: &str) -> Setup {
+    Setup::new(Scenario::find(name).unwrap(), None).unwrap()
+}
+
+fn run(setup: &Setup, log: impl io::Write) -> Recording {
+    let mut run = Lockstep::new(setup, log).unwrap();
+    while run.tick(&mut || Duration::ZERO).unwrap().is_some() {}
+    run.finish().unwrap()
+}
+
+fn holds(name: &str) -> Report {
+    let setup = setup(name);
+    let report = run(&setup, io::sink()).report(&setup, "virtual");
+    assert!(report.passed(), "\n{}", report.table());
+    report
+}
+
+macro_rules! scenarios {
+    ($($test:ident: $name:literal),* $(,)?) => {
+        $(#[test] fn $test() { holds($name); })*
+
+        #[test]
+        fn no_scenario_is_left_out() {
+            let tested = [$($name),*];
+            for (name, _) in xt28_scenarios::BUILTIN {
+                assert!(tested.contains(name), "{name} has no test here");
+            }
+        }
+    };
+}
+
+scenarios! {
+    straight_25m: "straight-25m",
+    turn_left: "turn-left",
+    turn_right: "turn-right",
+    s_turn: "s-turn",
+    arm_steps: "arm-steps",
+    ramp: "ramp",
+    command_loss: "command-loss",
+}
+
+#[test]
+fn twice_the_same_seed_is_twice_the_same_log_and_another_seed_another() {
+    let setup = setup("command-loss");
+    let (mut first, mut second) = (Vec::new(), Vec::new());
+    let hash = run(&setup, &mut first).log_sha256;
+    assert_eq!(hash, run(&setup, &mut second).log_sha256);
+    assert_eq!(first, second);
+    let other = Setup { seed: setup.seed + 1, ..setup };
+    assert_ne!(hash, run(&other, io::sink()).log_sha256);
+}
+
+#[test]
+fn a_run_is_judged_by_what_its_log_holds() {
+    let setup = setup("command-loss");
+    let mut log = Vec::new();
+    let recording = run(&setup, &mut log);
+    let read = Recording::read(log.as_slice(), "run.log", SimTime::ZERO).unwrap();
+    assert_eq!(read, recording.trace);
+    let judged: Vec<Finding> = setup.judge(&read, None);
+    assert!(judged.iter().all(Finding::passed), "{judged:?}");
+}

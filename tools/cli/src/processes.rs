@@ -1,0 +1,155 @@
+//! A run on a real CAN interface: emulator, gateway and candump as programs of their own.
+//!
+//! Nothing here spins: the runner sleeps from one deadline to the next, so it also runs under a
+//! kernel whose time only passes when all sleep.
+
+mod program;
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use program::Program;
+use xt28_bus::SocketCan;
+use xt28_machine::SimTime;
+use xt28_scenarios::{Cost, Ground, Node, Recording, Setup, sha256};
+
+use crate::Failure;
+use crate::artefacts::Artefacts;
+
+/// How long candump may take to open its socket. It does not say when it has.
+const CANDUMP_START: Duration = Duration::from_millis(300);
+/// How often the programs are looked after.
+const WATCH: Duration = Duration::from_millis(50);
+/// What the last frames may take to reach candump's file.
+const LAST_FRAMES: Duration = Duration::from_millis(100);
+
+/// Runs `setup` on the CAN interface `bus`, in real time, and reads back what candump logged.
+pub(crate) fn run(
+    setup: &Setup,
+    bus: &str,
+    artefacts: &Artefacts,
+) -> Result<(Recording, Cost), Failure> {
+    // Opened only to be refused here, with one message, rather than by three programs.
+    SocketCan::open(bus)?;
+    setup.policy()?;
+    let folder = Scratch::new()?;
+    let log = artefacts.log().map_or_else(|| folder.path.join("candump.log"), Path::to_owned);
+    let begun = Instant::now();
+    let start = drive(setup, bus, &folder.path, &log)?;
+    let wall_s = begun.elapsed().as_secs_f64();
+
+    let name = log.display().to_string();
+    let trace = Recording::read(BufReader::new(File::open(&log)?), &name, start)?;
+    let log_sha256 = sha256(&fs::read(&log)?);
+    let recording = Recording { trace, truth: None, log_sha256, bus_load: None };
+    Ok((recording, Cost { wall_s, physics_step_us: None, lateness_max_ms: None }))
+}
+
+/// Starts the programs, lets the run pass, and stops them. Gives the instant the gateway started,
+/// since 1970: the zero of the run.
+fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<SimTime, Failure> {
+    let mut candump = Program::start("candump", &["-L", bus], Some(File::create(log)?))?;
+    thread::sleep(CANDUMP_START);
+    let mut emulator = Program::start_beside("ecu-emu", &emulator_arguments(setup, bus, folder)?)?;
+    let pty = gnss_pty(&mut emulator)?;
+    let policy = policy_argument(setup, folder)?;
+    let arguments = ["--bus", bus, "--policy", &policy, "--gnss", &pty];
+    let start = SystemTime::now().duration_since(UNIX_EPOCH)?;
+    let begun = Instant::now();
+    let mut gateway = Program::start_beside("gateway", &arguments)?;
+
+    let mut events = setup.scenario.events.clone();
+    events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    for event in &events {
+        let due = begun + Duration::from_secs_f64(event.at_s);
+        sleep_watching(due, &mut [&mut candump, &mut emulator, &mut gateway])?;
+        match event.kill {
+            Node::Gateway => gateway.kill()?,
+            Node::Emulator => emulator.kill()?,
+        }
+    }
+    let end = begun + Duration::from_secs_f64(setup.scenario.duration_s);
+    sleep_watching(end, &mut [&mut candump, &mut emulator, &mut gateway])?;
+    gateway.stop()?;
+    emulator.stop()?;
+    thread::sleep(LAST_FRAMES);
+    candump.stop()?;
+    Ok(SimTime::ZERO + start)
+}
+
+/// Sleeps until `due`; an error if one of the programs ends before.
+fn sleep_watching(due: Instant, programs: &mut [&mut Program]) -> Result<(), Failure> {
+    loop {
+        for program in programs.iter_mut() {
+            program.must_run()?;
+        }
+        let left = due.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Ok(());
+        }
+        thread::sleep(left.min(WATCH));
+    }
+}
+
+fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<String>, Failure> {
+    let mut arguments = vec!["--bus".to_owned(), bus.to_owned()];
+    let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
+    add("--seed", setup.seed.to_string());
+    if let Some(machine) = setup.machine_file() {
+        add("--machine", machine.display().to_string());
+    }
+    if let Ground::Ramp(ramp) = &setup.scenario.terrain {
+        let [foot, crest, end, out] = ramp.x_m;
+        let file = folder.join("terrain.toml");
+        let text = format!(
+            "kind = \"ramp\"\nx_m = [{foot:?}, {crest:?}, {end:?}, {out:?}]\nheight_m = {:?}\n\
+             y_min_m = {:?}\ny_max_m = {:?}\n",
+            ramp.height_m, ramp.y_min_m, ramp.y_max_m
+        );
+        fs::write(&file, text)?;
+        add("--terrain", file.display().to_string());
+    }
+    Ok(arguments)
+}
+
+/// The policy as the gateway's command line takes it; a script is written to a file first.
+fn policy_argument(setup: &Setup, folder: &Path) -> Result<String, Failure> {
+    let Some(script) = &setup.scenario.script else {
+        return Ok(setup.scenario.policy.clone());
+    };
+    let file = folder.join("script.toml");
+    fs::write(&file, &script.text)?;
+    Ok(format!("script:{}", file.display()))
+}
+
+/// The emulator says where its GNSS receiver is, in the first line of its output.
+fn gnss_pty(emulator: &mut Program) -> Result<String, Failure> {
+    let line = emulator.first_line()?;
+    let said: serde_json::Value = serde_json::from_str(&line)
+        .map_err(|error| format!("ecu-emu said `{}`, not a line of JSON: {error}", line.trim()))?;
+    let pty = said["gnss_pty"].as_str();
+    Ok(pty.ok_or_else(|| format!("ecu-emu said `{}`, without gnss_pty", line.trim()))?.to_owned())
+}
+
+/// A folder for the run's own files, gone with the run.
+struct Scratch {
+    path: PathBuf,
+}
+
+impl Scratch {
+    fn new() -> Result<Self, Failure> {
+        let path = std::env::temp_dir().join(format!("xt28-run-{}", std::process::id()));
+        fs::create_dir_all(&path)?;
+        Ok(Self { path })
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // What can't be removed is left to the system's own cleaning.
+        let _ = fs::remove_dir_all(&self.path);
+    }
+}

@@ -1,0 +1,113 @@
+//! `xt28 run`: one scenario, on the virtual bus in lockstep or as programs on a real one.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup};
+
+use crate::artefacts::Artefacts;
+use crate::pace::Pace;
+use crate::{Failure, Verdict, processes};
+
+/// Run a scenario and say whether it holds
+#[derive(Args)]
+pub(crate) struct Run {
+    /// A built-in name (see `xt28 scenarios`) or a TOML file
+    scenario: String,
+    /// Seed of all noise, instead of the scenario's own
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// `virtual`, or a CAN interface such as vcan0, where emulator and gateway run as programs
+    #[arg(long, default_value = VIRTUAL, value_name = "BUS")]
+    bus: String,
+    /// Pace the virtual bus by wall time; a real bus always is
+    #[arg(long)]
+    realtime: bool,
+    /// Write the candump log here
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Print the report as JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Write log, picture (SVG) and report into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const VIRTUAL: &str = "virtual";
+
+impl Run {
+    /// What a bare `xt28` runs.
+    pub(crate) fn demo() -> Self {
+        Self {
+            scenario: "straight-25m".to_owned(),
+            seed: None,
+            bus: VIRTUAL.to_owned(),
+            realtime: false,
+            record: None,
+            json: false,
+            out: Some(PathBuf::from("out")),
+        }
+    }
+
+    pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
+        let name = &setup.scenario.name;
+        let artefacts = Artefacts::new(name, self.record.as_deref(), self.out.as_deref())?;
+        let (recording, cost) = if self.bus == VIRTUAL {
+            self.lockstep(&setup, &artefacts)?
+        } else {
+            processes::run(&setup, &self.bus, &artefacts)?
+        };
+        let report = Report { cost: Some(cost), ..recording.report(&setup, &self.bus) };
+        let files = artefacts.write(&setup, &recording, &report)?;
+        if self.json {
+            println!("{:#}", report.json());
+        } else {
+            print!("{}", report.table());
+        }
+        for file in files {
+            eprintln!("wrote {}", file.display());
+        }
+        Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    fn lockstep(&self, setup: &Setup, artefacts: &Artefacts) -> Result<(Recording, Cost), Failure> {
+        let bar = progress_bar(setup);
+        let mut run = Lockstep::new(setup, artefacts.log_writer()?)?;
+        let mut pace = Pace::start(self.realtime);
+        let (mut emulator, mut ticks) = (Duration::ZERO, 0_u32);
+        loop {
+            pace.wait_until(Duration::from_nanos(run.now().as_nanos()));
+            let Some(cost) = run.tick(&mut || pace.elapsed())? else {
+                break;
+            };
+            emulator += cost.emulator;
+            ticks += 1;
+            bar.set_position(run.now().as_nanos() / 1_000_000);
+        }
+        let recording = run.finish()?;
+        let wall_s = pace.elapsed().as_secs_f64();
+        bar.finish_and_clear();
+        let steps = f64::from(ticks.max(1)) * f64::from(STEPS_PER_TICK);
+        let cost = Cost {
+            wall_s,
+            physics_step_us: Some(emulator.as_secs_f64() * 1e6 / steps),
+            lateness_max_ms: pace.lateness_max_ms(),
+        };
+        Ok((recording, cost))
+    }
+}
+
+/// A bar over simulated time; indicatif draws it on a terminal only.
+fn progress_bar(setup: &Setup) -> ProgressBar {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most an hour
+    let bar = ProgressBar::new((setup.scenario.duration_s * 1e3) as u64);
+    let template = "{msg} [{bar:40}] {percent:>3} %  {elapsed}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.with_message(setup.scenario.name.clone())
+}

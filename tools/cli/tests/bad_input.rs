@@ -1,0 +1,101 @@
+//! What the command answers to bad input: one line with file, line and remedy, exit status 2.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+fn xt28(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
+}
+
+/// The one line of a refusal.
+fn refusal(arguments: &[&str]) -> String {
+    let output = xt28(arguments);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(output.stdout.is_empty(), "a refusal leaves no data");
+    assert_eq!(talk.lines().count(), 1, "{talk}");
+    assert!(talk.starts_with("xt28: "), "{talk}");
+    talk
+}
+
+fn file(folder: &tempfile::TempDir, name: &str, text: &str) -> String {
+    let path: PathBuf = folder.path().join(name);
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+const SCENARIO: &str = "title = \"t\"\npolicy = \"hold\"\nduration_s = 1\n[[expect]]\nstands-still = { below_m_s = 0.1 }\n";
+
+#[test]
+fn an_unknown_scenario_is_answered_with_the_nearest() {
+    let talk = refusal(&["run", "straight-25"]);
+    assert!(talk.contains("did you mean `straight-25m`?"), "{talk}");
+}
+
+#[test]
+fn a_missing_scenario_file_is_named() {
+    let talk = refusal(&["run", "no/such.toml"]);
+    assert!(talk.contains("no/such.toml: cannot read the scenario"), "{talk}");
+}
+
+#[test]
+fn an_unknown_key_or_unit_is_named_with_file_line_and_the_known_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    for (from, to, line, known) in [
+        ("duration_s", "duration_ms", ":3: unknown field `duration_ms`", "duration_s"),
+        ("below_m_s", "below_km_h", ":5: unknown field `below_km_h`", "below_m_s"),
+        ("title", "name", ":1: unknown field `name`", "title"),
+        ("= 1\n", "= \"1 s\"\n", ":3: invalid type", "f64"),
+    ] {
+        let path = file(&folder, "bad.toml", &SCENARIO.replace(from, to));
+        let talk = refusal(&["run", &path]);
+        assert!(talk.contains(&format!("{path}{line}")), "{talk}");
+        assert!(talk.contains(known), "{talk}");
+    }
+}
+
+#[test]
+fn a_policy_that_is_none_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "bad.toml", &SCENARIO.replace("\"hold\"", "\"drive\""));
+    let talk = refusal(&["run", &path]);
+    assert!(talk.contains(&format!("{path}:2: no policy")), "{talk}");
+    assert!(talk.contains("goto:X,Y,HEADING"), "{talk}");
+    let path = file(&folder, "bad.toml", &SCENARIO.replace("\"hold\"", "\"script:s.toml\""));
+    assert!(refusal(&["run", &path]).contains(&format!("{path}:2: cannot read")));
+    file(&folder, "s.toml", "[[command]]\nat_s = 1\nthrottle = 40\n");
+    let talk = refusal(&["run", &path]);
+    assert!(talk.contains("s.toml:3: unknown field `throttle`"), "{talk}");
+}
+
+#[test]
+fn a_bad_machine_file_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = file(&folder, "m.toml", "[masses]\narm_lb = 441\n");
+    let talk = refusal(&["config", "show", "--machine", &machine]);
+    assert!(talk.contains("m.toml:2: unknown field `arm_lb`"), "{talk}");
+    let path = file(&folder, "s.toml", &format!("machine = \"m.toml\"\n{SCENARIO}"));
+    assert!(refusal(&["run", &path]).contains("m.toml:2:"));
+}
+
+#[test]
+fn a_bus_that_does_not_exist_is_refused_before_anything_starts() {
+    let talk = refusal(&["run", "straight-25m", "--bus", "nocan7"]);
+    assert!(talk.contains("nocan7"), "{talk}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(&folder, "taken", "");
+    let talk = refusal(&["run", "straight-25m", "--out", &path]);
+    assert!(talk.contains("taken: cannot make this folder"), "{talk}");
+}
+
+#[test]
+fn an_unknown_option_is_usage() {
+    let output = xt28(&["run", "straight-25m", "--sed", "3"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("--seed"));
+}

@@ -1,0 +1,82 @@
+//! What `xt28 run` gives: data on stdout, talk on stderr, files where asked, its exit status.
+
+use std::fs;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn xt28(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
+}
+
+/// Half a second with the arms held: short, and the whole loop.
+fn short(expect: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("short.toml");
+    let text = format!("title = \"Short\"\npolicy = \"hold\"\nduration_s = 0.5\n{expect}");
+    fs::write(&path, text).unwrap();
+    let path = path.to_str().unwrap().to_owned();
+    (folder, path)
+}
+
+const STANDS: &str = "[[expect]]\nstands-still = { below_m_s = 0.1, over_s = 0.2 }\n";
+const FLIES: &str = "[[expect]]\nreaches-pose = { x_m = 9, y_m = 0, heading_deg = 0, within_m = 1, within_deg = 9 }\n";
+
+#[test]
+fn json_has_all_that_a_script_needs_and_nothing_else_is_on_stdout() {
+    let (_folder, path) = short(STANDS);
+    let output = xt28(&["run", &path, "--json", "--seed", "9"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: Value = serde_json::from_slice(&output.stdout).expect("one JSON value");
+    assert_eq!(json["scenario"], "short");
+    assert_eq!(json["seed"], 9);
+    assert_eq!(json["passed"], true);
+    assert_eq!(json["simulated_s"], 0.5);
+    for key in ["wall_s", "real_time_factor", "physics_step_us", "frames", "bus_load"] {
+        assert!(json[key].as_f64().is_some_and(|number| number > 0.0), "{key}: {}", json[key]);
+    }
+    assert_eq!(json["log_sha256"].as_str().map(str::len), Some(64));
+    assert!(json["expectations"].as_array().is_some_and(|list| list.len() >= 3));
+}
+
+#[test]
+fn an_expectation_that_fails_is_exit_status_1() {
+    let (_folder, path) = short(FLIES);
+    let output = xt28(&["run", &path]);
+    assert_eq!(output.status.code(), Some(1));
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("FAIL"), "{table}");
+}
+
+#[test]
+fn files_land_where_asked_and_the_same_seed_gives_the_same_log() {
+    let (folder, path) = short(STANDS);
+    let out = folder.path().join("deep/out");
+    let out = out.to_str().unwrap();
+    assert_eq!(xt28(&["run", &path, "--out", out]).status.code(), Some(0));
+    let log = fs::read_to_string(format!("{out}/short.log")).unwrap();
+    assert!(log.lines().all(|line| line.contains(" vcan0 ")));
+    let picture = fs::read_to_string(format!("{out}/short.svg")).unwrap();
+    assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"));
+    let report: Value =
+        serde_json::from_str(&fs::read_to_string(format!("{out}/short.json")).unwrap()).unwrap();
+    assert_eq!(report["frames"].as_u64(), Some(log.lines().count() as u64));
+    let again = folder.path().join("again.log");
+    let output = xt28(&["run", &path, "--record", again.to_str().unwrap(), "--realtime", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(fs::read_to_string(again).unwrap(), log);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["wall_s"].as_f64().is_some_and(|wall_s| wall_s >= 0.5), "paced by wall time");
+    assert!(json["lateness_max_ms"].is_number());
+}
+
+#[test]
+fn the_lists_print() {
+    let output = xt28(&["scenarios", "--json"]);
+    let list: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(list.as_array().is_some_and(|list| list.len() >= 7));
+    let text = xt28(&["scenarios", "ramp"]).stdout;
+    assert!(String::from_utf8(text).unwrap().contains("[terrain.ramp]"));
+    let text = xt28(&["config", "show"]).stdout;
+    assert!(String::from_utf8(text).unwrap().contains("radius_m"));
+}

@@ -1,12 +1,38 @@
 //! Policy actions to CAN frames and back, under the safety kernel.
+//!
+//! One path to the bus: observe → policy → safety kernel → frames. The core, [`Gateway`], is
+//! sans-IO: frames and receiver bytes go in with the time they came, frames come out at ticks of
+//! 10 ms. The same core runs in lockstep with the emulator and, in the binary, on the machine.
+//!
+//! | Module | What |
+//! |---|---|
+//! | [`Observation`] | sensors averaged between fixes, pose of the front axle |
+//! | [`policy`] | the trait, and the policies that need no file |
+//! | [`Action`] | eight numbers in -1..1 and what they mean |
+//! | `xt28_safety` | what may leave |
 #![forbid(unsafe_code)]
 
 mod action;
+mod config;
+mod epoch;
+mod frames;
+mod gateway;
 mod observation;
+mod peer;
 pub mod policy;
 mod pose;
+mod running;
+mod sensors;
+mod status;
 
 pub use action::{Action, ActionMap};
+pub use config::GatewayConfig;
+pub use epoch::{Fix, Quality};
+pub use gateway::Gateway;
 pub use observation::{Located, Observation};
+pub use peer::PeerState;
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
+pub use status::{Status, Tally};
+pub use xt28_safety::{Order, Phase, Reason};
+pub use xt28_ubx::Geodetic;

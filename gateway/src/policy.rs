@@ -45,6 +45,8 @@ pub enum Pace {
 /// How a policy's task stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
+    /// It has no end to come to; good as long as nothing stops it.
+    Endless,
     /// Still at it.
     Running,
     /// Done; its demand now holds the machine.

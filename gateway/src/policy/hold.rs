@@ -24,6 +24,6 @@ impl Policy for Hold {
     }
 
     fn outcome(&self) -> Outcome {
-        Outcome::Running
+        Outcome::Endless
     }
 }

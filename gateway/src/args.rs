@@ -1,0 +1,93 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use gateway::Geodetic;
+
+/// Drive an Xt28 over CAN: a policy's actions become frames, under the safety kernel.
+///
+/// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver where the policy
+/// needs one. Ends when the policy is done, or after --duration; SIGINT and SIGTERM stop the
+/// machine, go silent, then exit.
+///
+/// Exit code: 0 done, 1 not done (goal missed, safety stop, interrupted), 2 usage or I/O.
+#[derive(Debug, Parser)]
+#[command(name = "gateway", version)]
+pub(crate) struct Args {
+    /// CAN interface that the ECUs are on
+    #[arg(long, value_name = "INTERFACE")]
+    pub(crate) bus: String,
+
+    /// What drives: goto:X,Y,HEADING_DEG (metres east and north of the origin, degrees
+    /// counter-clockwise from east), script:FILE (timed commands, TOML) or hold
+    #[arg(long, value_name = "POLICY")]
+    pub(crate) policy: String,
+
+    /// Serial port of the u-blox receiver (NAV-PVT, NAV-RELPOSNED and, better, NAV-HPPOSLLH)
+    #[arg(long, value_name = "DEVICE")]
+    pub(crate) gnss: Option<PathBuf>,
+
+    /// Machine file; the built-in Xt28 when left out
+    #[arg(long, value_name = "FILE")]
+    pub(crate) machine: Option<PathBuf>,
+
+    /// Origin of the local frame: degrees, degrees, metres above the ellipsoid
+    #[arg(long, value_name = "LAT,LON,H", value_parser = origin, default_value = "59.8,17.9,20",
+          allow_hyphen_values = true)]
+    pub(crate) origin: Geodetic,
+
+    /// Stop after this many seconds, done or not; the last second and a half are the stop
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub(crate) duration: Option<f64>,
+
+    /// Give up when not armed after this many seconds
+    #[arg(long, value_name = "S", value_parser = seconds, default_value = "30")]
+    pub(crate) arm_within: f64,
+
+    /// Write every frame sent and received to a candump log
+    #[arg(long, value_name = "FILE")]
+    pub(crate) record: Option<PathBuf>,
+
+    /// Print the result on stdout as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(s) if s > 0.0 && s <= 1e7 => Ok(s),
+        _ => Err("give seconds above 0".to_owned()),
+    }
+}
+
+fn origin(text: &str) -> Result<Geodetic, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[latitude, longitude, height])
+            if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 && height.abs() < 1e5 =>
+        {
+            Ok(Geodetic::from_degrees(latitude, longitude, height))
+        }
+        _ => {
+            Err("give latitude, longitude in degrees and height in metres, as 59.8,17.9,20"
+                .to_owned())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound_and_its_default_origin_the_benchs() {
+        let args = Args::try_parse_from(["gateway", "--bus", "can0", "--policy", "hold"]).unwrap();
+        assert_eq!(args.origin, Geodetic::BENCH_ORIGIN);
+        assert!(origin("-33.9,18.4,100").is_ok());
+        for bad in ["", "59.8,17.9", "91,0,0", "0,181,0", "nan,0,0"] {
+            assert!(origin(bad).unwrap_err().contains("59.8,17.9,20"), "{bad}");
+        }
+        assert!(seconds("nan").is_err() && seconds("-1").is_err() && seconds("0.5").is_ok());
+    }
+}

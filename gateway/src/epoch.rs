@@ -1,0 +1,215 @@
+//! One GNSS epoch out of the receiver's messages: position, velocity and heading of one instant.
+
+use core::f64::consts::FRAC_PI_2;
+
+use xt28_ubx::{
+    CarrierSolution, Counts, FixType, Geodetic, Message, NavHpPosLlh, NavPvt, NavRelPosNed, Parser,
+};
+
+use crate::pose::wrap;
+
+/// What the receiver says of one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Epoch {
+    /// The antenna, from NAV-HPPOSLLH where there is one, else NAV-PVT.
+    pub(crate) position: Geodetic,
+    /// East, north, up, m/s.
+    pub(crate) velocity_m_s: [f64; 3],
+    /// Counter-clockwise from east, rad; `None` when the receiver does not vouch for it.
+    pub(crate) heading_rad: Option<f64>,
+    pub(crate) quality: Quality,
+}
+
+/// How good a fix is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Quality {
+    /// What the fix rests on.
+    pub fix: Fix,
+    /// Satellites used.
+    pub satellites: u8,
+    /// Horizontal accuracy estimate, m.
+    pub accuracy_horizontal_m: f64,
+}
+
+/// What a fix rests on, worst first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fix {
+    /// Nothing to drive by.
+    #[default]
+    None,
+    /// Two dimensions, or dead reckoning.
+    TwoD,
+    /// Three dimensions, metres.
+    ThreeD,
+    /// Carrier phase, decimetres.
+    RtkFloat,
+    /// Carrier phase with fixed ambiguities, centimetres and better.
+    RtkFixed,
+}
+
+/// Collects the messages of an epoch. They carry its time of week, so it does not matter in which
+/// order or in which portions they come.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EpochCollector {
+    parser: Parser,
+    time_of_week_ms: Option<u32>,
+    pvt: Option<NavPvt>,
+    fine: Option<NavHpPosLlh>,
+    relative: Option<NavRelPosNed>,
+    /// The receiver sends the fine position, so it is waited for.
+    sends_fine: bool,
+    /// The epoch at hand was given out already.
+    given: bool,
+    incomplete: u64,
+}
+
+impl EpochCollector {
+    /// Takes bytes of the receiver's stream; the last epoch completed by them.
+    pub(crate) fn push(&mut self, bytes: &[u8]) -> Option<Epoch> {
+        let mut parser = core::mem::take(&mut self.parser);
+        let newest = parser.push(bytes).filter_map(|message| self.add(&message)).last();
+        self.parser = parser;
+        newest
+    }
+
+    /// What the parser met, and epochs that never got complete.
+    pub(crate) const fn counts(&self) -> (Counts, u64) {
+        (self.parser.counts(), self.incomplete)
+    }
+
+    fn add(&mut self, message: &Message) -> Option<Epoch> {
+        let time_of_week_ms = message.time_of_week_ms();
+        if self.time_of_week_ms != Some(time_of_week_ms) {
+            if self.time_of_week_ms.is_some() && !self.given {
+                self.incomplete += 1;
+            }
+            // A receiver that stops sending the fine position is read without it from then on.
+            self.sends_fine &= self.fine.is_some() || self.time_of_week_ms.is_none();
+            self.time_of_week_ms = Some(time_of_week_ms);
+            (self.pvt, self.fine, self.relative, self.given) = (None, None, None, false);
+        }
+        match message {
+            Message::Pvt(pvt) => self.pvt = Some(*pvt),
+            Message::HpPosLlh(fine) => {
+                self.fine = Some(*fine);
+                self.sends_fine = true;
+            }
+            Message::RelPosNed(relative) => self.relative = Some(*relative),
+        }
+        let (Some(pvt), Some(relative)) = (self.pvt, self.relative) else { return None };
+        if self.given || (self.sends_fine && self.fine.is_none()) {
+            return None;
+        }
+        self.given = true;
+        Some(epoch(&pvt, self.fine.as_ref(), &relative))
+    }
+}
+
+fn epoch(pvt: &NavPvt, fine: Option<&NavHpPosLlh>, relative: &NavRelPosNed) -> Epoch {
+    let fine = fine.filter(|fine| fine.valid);
+    // The baseline points forward: base antenna behind, rover antenna ahead.
+    let heading_rad =
+        (relative.heading_valid && relative.fix_ok).then(|| wrap(FRAC_PI_2 - relative.heading_rad));
+    Epoch {
+        position: fine.map_or(pvt.position, |fine| fine.position),
+        velocity_m_s: [pvt.velocity_east_m_s, pvt.velocity_north_m_s, -pvt.velocity_down_m_s],
+        heading_rad,
+        quality: Quality {
+            fix: fix(pvt),
+            satellites: pvt.satellites,
+            accuracy_horizontal_m: fine
+                .map_or(pvt.accuracy_horizontal_m, |fine| fine.accuracy_horizontal_m),
+        },
+    }
+}
+
+fn fix(pvt: &NavPvt) -> Fix {
+    if !pvt.fix_ok {
+        return Fix::None;
+    }
+    match (pvt.fix_type, pvt.carrier) {
+        (FixType::ThreeD | FixType::Combined, CarrierSolution::Fixed) => Fix::RtkFixed,
+        (FixType::ThreeD | FixType::Combined, CarrierSolution::Float) => Fix::RtkFloat,
+        (FixType::ThreeD | FixType::Combined, _) => Fix::ThreeD,
+        (FixType::TwoD | FixType::DeadReckoning, _) => Fix::TwoD,
+        (FixType::None | FixType::TimeOnly | FixType::Reserved(_), _) => Fix::None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: Geodetic = Geodetic::BENCH_ORIGIN;
+
+    fn bytes(messages: &[Message]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        messages.iter().for_each(|m| m.encode(&mut bytes).unwrap());
+        bytes
+    }
+
+    fn messages(time_of_week_ms: u32) -> [Message; 3] {
+        let carrier = CarrierSolution::Fixed;
+        let fine_height_m = HERE.height_m + 0.0004;
+        let fine = Geodetic { height_m: fine_height_m, ..HERE };
+        [
+            Message::Pvt(NavPvt {
+                time_of_week_ms,
+                carrier,
+                position: HERE,
+                fix_ok: true,
+                fix_type: FixType::ThreeD,
+                velocity_down_m_s: 0.5,
+                ..NavPvt::default()
+            }),
+            Message::HpPosLlh(NavHpPosLlh {
+                time_of_week_ms,
+                valid: true,
+                position: fine,
+                ..NavHpPosLlh::default()
+            }),
+            Message::RelPosNed(NavRelPosNed {
+                time_of_week_ms,
+                heading_rad: 0.0,
+                heading_valid: true,
+                fix_ok: true,
+                carrier,
+                ..NavRelPosNed::default()
+            }),
+        ]
+    }
+
+    #[test]
+    fn an_epoch_is_complete_in_any_order() {
+        let [a, b, c] = messages(125);
+        for order in [[a, b, c], [c, b, a], [b, c, a]] {
+            let mut collector = EpochCollector::default();
+            // From the second epoch on, the fine position is known to come.
+            collector.push(&bytes(&messages(0)));
+            let epoch = collector.push(&bytes(&order)).unwrap();
+            assert!((epoch.position.height_m - HERE.height_m - 0.0004).abs() < 1e-9, "{order:?}");
+            assert_eq!(epoch.quality.fix, Fix::RtkFixed);
+            assert!((epoch.velocity_m_s[2] + 0.5).abs() < 1e-12);
+            assert!((epoch.heading_rad.unwrap() - FRAC_PI_2).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn messages_of_two_epochs_are_never_mixed() {
+        let mut collector = EpochCollector::default();
+        let [pvt, fine, _] = messages(0);
+        let [_, _, relative] = messages(125);
+        assert_eq!(collector.push(&bytes(&[pvt, fine, relative])), None);
+        assert_eq!(collector.counts().1, 1);
+    }
+
+    #[test]
+    fn a_receiver_without_the_fine_position_is_read_as_it_is() {
+        let mut collector = EpochCollector::default();
+        collector.push(&bytes(&messages(0)));
+        for (time_of_week_ms, complete) in [(125, false), (250, true)] {
+            let [pvt, _, relative] = messages(time_of_week_ms);
+            assert_eq!(collector.push(&bytes(&[pvt, relative])).is_some(), complete);
+        }
+    }
+}

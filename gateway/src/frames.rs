@@ -1,0 +1,153 @@
+//! Demands and fixes as frames: the one place where SI becomes what the wire says.
+
+use core::f64::consts::TAU;
+
+use xt28_dbc::messages::{
+    ArmTarget, ArmTargetMode, ArmValve, DriveTarget, GnssPosition, GnssQuality, GnssVelocity,
+};
+use xt28_dbc::{AliveCounter, EncodeError, Outbox};
+use xt28_safety::{Arms, Command};
+use xt28_ubx::Enu;
+
+use crate::epoch::{Fix, Quality};
+
+/// On the wire, this target holds the arm: raw 255 at 2 mm a bit.
+const HOLD_MM: f64 = 510.0;
+/// Resolution of a target stroke, mm.
+const STROKE_STEP_MM: f64 = 2.0;
+
+/// Whether frames may move anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Drive {
+    /// As commanded.
+    Enabled,
+    /// Throttle zero and not enabled, whatever the command.
+    Neutral,
+}
+
+/// Writes the gateway's frames and counts them alive.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FrameWriter {
+    arm: AliveCounter,
+    drive: AliveCounter,
+    valve: AliveCounter,
+    /// Counters last sent to the arm and the drive ECU.
+    sent: Option<(u8, u8)>,
+    engine_speed_rpm: f64,
+}
+
+impl FrameWriter {
+    pub(crate) fn new(engine_speed_rpm: f64) -> Self {
+        Self { engine_speed_rpm, ..Self::default() }
+    }
+
+    /// Counters last sent to the arm and the drive ECU, none after silence.
+    pub(crate) const fn sent(&self) -> Option<(u8, u8)> {
+        self.sent
+    }
+
+    /// Nothing was sent: what is acknowledged from now on is old.
+    pub(crate) const fn silence(&mut self) {
+        self.sent = None;
+    }
+
+    /// The frames that carry `command` to both ECUs.
+    pub(crate) fn actuate(
+        &mut self,
+        command: &Command,
+        drive: Drive,
+        out: &mut Outbox,
+    ) -> Result<(), EncodeError> {
+        let (arm_counter, drive_counter) = (self.arm.next(), self.drive.next());
+        let (mode, strokes) = match command.arms {
+            Arms::Off => (ArmTargetMode::Off, [None; 6]),
+            Arms::Automatic => (ArmTargetMode::Automatic, [None; 6]),
+            Arms::Position(strokes) => (ArmTargetMode::ManualPosition, strokes),
+            Arms::Valve(_) => (ArmTargetMode::ManualValve, [None; 6]),
+        };
+        let [fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm] = strokes.map(stroke_mm);
+        let arm =
+            ArmTarget { fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm, mode, counter: arm_counter };
+        out.push(arm.encode()?);
+        if let Arms::Valve(openings) = command.arms {
+            let [fr_percent, fl_percent, mr_percent, ml_percent, br_percent, bl_percent] =
+                openings.map(|opening| opening * 100.0);
+            let counter = self.valve.next();
+            let valve = ArmValve {
+                fr_percent,
+                fl_percent,
+                mr_percent,
+                ml_percent,
+                br_percent,
+                bl_percent,
+                counter,
+            };
+            out.push(valve.encode()?);
+        }
+        let enable = drive == Drive::Enabled;
+        let target = DriveTarget {
+            throttle_percent: if enable { command.throttle * 100.0 } else { 0.0 },
+            front_angle_deg: command.front_angle_rad.to_degrees(),
+            engine_speed_rpm: self.engine_speed_rpm,
+            brake: command.brake,
+            enable,
+            counter: drive_counter,
+        };
+        out.push(target.encode()?);
+        self.sent = Some((arm_counter, drive_counter));
+        Ok(())
+    }
+}
+
+/// A stroke target as the wire has it: rounded to its step, or the value that holds.
+fn stroke_mm(stroke_m: Option<f64>) -> f64 {
+    stroke_m.map_or(HOLD_MM, |m| (m * 1e3 / STROKE_STEP_MM).round() * STROKE_STEP_MM)
+}
+
+/// The log's record of a fix: position of the antenna, not of the front axle, and without regard to
+/// its lean, as the field logs have it.
+pub(crate) fn position(antenna: Enu, out: &mut Outbox) -> Result<(), EncodeError> {
+    let (east_mm, north_mm) = (antenna.east_m * 1e3, antenna.north_m * 1e3);
+    out.push(GnssPosition { east_mm, north_mm }.encode()?);
+    Ok(())
+}
+
+/// Velocity of the antenna east, north, up, and the machine's heading.
+pub(crate) fn velocity(
+    velocity_m_s: [f64; 3],
+    heading_rad: f64,
+    out: &mut Outbox,
+) -> Result<(), EncodeError> {
+    let [east_mm_s, north_mm_s, up_mm_s] = velocity_m_s.map(|v| v * 1e3);
+    // Rounded here, since 359.996 must become 0 and not 360.
+    let heading_deg = (heading_rad.rem_euclid(TAU).to_degrees() * 100.0).round() % 36_000.0 / 100.0;
+    out.push(GnssVelocity { east_mm_s, north_mm_s, up_mm_s, heading_deg }.encode()?);
+    Ok(())
+}
+
+/// How good the fix is and how long it waited, s.
+pub(crate) fn quality(
+    quality: &Quality,
+    latency_s: f64,
+    out: &mut Outbox,
+) -> Result<(), EncodeError> {
+    let frame = GnssQuality {
+        fix: match quality.fix {
+            Fix::None => 0,
+            Fix::TwoD => 1,
+            Fix::ThreeD => 2,
+            Fix::RtkFloat => 3,
+            Fix::RtkFixed => 4,
+        },
+        satellites: quality.satellites,
+        accuracy_mm: saturated(quality.accuracy_horizontal_m * 1e3),
+        latency_ms: saturated(latency_s * 1e3),
+    };
+    out.push(frame.encode()?);
+    Ok(())
+}
+
+/// Accuracy without a fix is kilometres; the field says 65.535 m at most.
+fn saturated(value: f64) -> f64 {
+    value.clamp(0.0, 65_535.0)
+}

@@ -1,0 +1,329 @@
+//! The gateway's core: observe, ask the policy, hold to the limits, send. No clock, no socket.
+
+use xt28_dbc::messages::{ArmStatus, DriveStatus};
+use xt28_dbc::{EncodeError, Frame, Outbox};
+use xt28_machine::{Machine, SimTime};
+use xt28_safety::{Command, Input, Order, Phase, Stamps, State, Verdict, step};
+use xt28_ubx::{Enu, LocalFrame};
+
+use crate::epoch::{Epoch, EpochCollector, Fix, Quality};
+use crate::frames::{self, Drive, FrameWriter};
+use crate::peer::Peer;
+use crate::sensors::Sensors;
+use crate::status::{Status, Tally};
+use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pace, Policy, Pose};
+
+/// After a stop, neutral frames go on for this long, so that the machine is brought to rest and not
+/// left to the ECUs' deadlines; then silence.
+const NEUTRAL_TICKS: u32 = 150;
+/// Within the neutral frames, the parking brake waits for standstill or this many ticks.
+const BRAKE_BY_FORCE_TICKS: u32 = 100;
+/// Slower than this the brake may close, m/s (assumed).
+const STANDING_M_S: f64 = 0.1;
+
+/// The gateway, to be fed frames, receiver bytes and ticks of 10 ms.
+pub struct Gateway {
+    config: GatewayConfig,
+    wheel_radius_m: f64,
+    antenna_m: [f64; 3],
+    map: ActionMap,
+    frame: LocalFrame,
+    policy: Box<dyn Policy>,
+    sensors: Sensors,
+    arm_ecu: Peer,
+    drive_ecu: Peer,
+    epochs: EpochCollector,
+    /// The newest epoch not yet handled, and when it was complete.
+    fresh: Option<(SimTime, Epoch)>,
+    located: Option<Located>,
+    quality: Option<Quality>,
+    request: Option<Command>,
+    stamps: Stamps,
+    kernel: State,
+    order: Order,
+    auto_arm: bool,
+    armed_at: Option<SimTime>,
+    verdict: Verdict,
+    first_hazard: Option<(SimTime, xt28_safety::Reason)>,
+    neutral_left: u32,
+    writer: FrameWriter,
+    bus_ok: bool,
+    tally: Tally,
+}
+
+impl Gateway {
+    /// A disarmed gateway.
+    #[must_use]
+    pub fn new(machine: &Machine, config: GatewayConfig, policy: Box<dyn Policy>) -> Self {
+        Self {
+            wheel_radius_m: machine.wheels.radius_m,
+            antenna_m: machine.sensors.gnss_antenna_m,
+            map: ActionMap::new(machine),
+            frame: LocalFrame::new(config.origin),
+            policy,
+            sensors: Sensors::new(),
+            arm_ecu: Peer::default(),
+            drive_ecu: Peer::default(),
+            epochs: EpochCollector::default(),
+            fresh: None,
+            located: None,
+            quality: None,
+            request: None,
+            stamps: Stamps::default(),
+            kernel: State::new(),
+            order: Order::None,
+            auto_arm: config.arm_at_start,
+            armed_at: None,
+            verdict: Verdict::Block(xt28_safety::Reason::Disarmed),
+            first_hazard: None,
+            neutral_left: 0,
+            writer: FrameWriter::new(machine.drive.engine_speed_rpm),
+            bus_ok: true,
+            tally: Tally::default(),
+            config,
+        }
+    }
+
+    /// A frame from the bus.
+    pub fn on_frame(&mut self, now: SimTime, frame: &Frame) {
+        match frame.id() {
+            ArmStatus::ID => self.arm_ecu.on_status(now, ArmStatus::decode(frame)),
+            DriveStatus::ID => self.drive_ecu.on_status(now, DriveStatus::decode(frame)),
+            _ => self.sensors.on_frame(now, frame),
+        }
+    }
+
+    /// Bytes from the receiver, in any portions.
+    pub fn on_gnss(&mut self, now: SimTime, bytes: &[u8]) {
+        if let Some(epoch) = self.epochs.push(bytes) {
+            self.fresh = Some((now, epoch));
+        }
+    }
+
+    /// Whether the bus can carry frames. A fault purges what was asked for and needs a new order.
+    pub const fn on_bus(&mut self, ok: bool) {
+        self.bus_ok = ok;
+        if !ok {
+            self.neutral_left = 0;
+        }
+    }
+
+    /// An order to the safety kernel, carried out at the next tick.
+    pub const fn order(&mut self, order: Order) {
+        // An emergency stop waiting to be carried out is not overtaken.
+        if !matches!(self.order, Order::EmergencyStop) {
+            self.order = order;
+        }
+        self.auto_arm = false;
+    }
+
+    /// One period of 10 ms: at most one round of frames is added to `out`.
+    pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
+        let located = self.locate(now, out);
+        self.ask(now, located);
+        let was = self.kernel.phase();
+        let input = self.input();
+        self.order = Order::None;
+        (self.kernel, self.verdict) =
+            step(&self.config.limits, self.kernel, &input, now.as_nanos());
+        self.follow(now, was);
+        let sent = match self.verdict {
+            Verdict::Allow(command) => {
+                self.tally.allowed += 1;
+                self.writer.actuate(&command, Drive::Enabled, out)
+            }
+            Verdict::Clamp(command, _) => {
+                self.tally.clamped += 1;
+                self.writer.actuate(&command, Drive::Enabled, out)
+            }
+            Verdict::Block(_) => self.stay_neutral(out),
+        };
+        self.note(sent);
+    }
+
+    /// How things stand.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        let (parsed, fixes_incomplete) = self.epochs.counts();
+        Status {
+            phase: self.kernel.phase(),
+            blocked: match self.verdict {
+                Verdict::Block(reason) => Some(reason),
+                Verdict::Allow(_) | Verdict::Clamp(..) => None,
+            },
+            first_hazard: self.first_hazard,
+            outcome: self.outcome(),
+            armed_at: self.armed_at,
+            located: self.located,
+            quality: self.quality,
+            arm_ecu: self.arm_ecu.state(),
+            drive_ecu: self.drive_ecu.state(),
+            counts: Tally {
+                fixes_incomplete,
+                gnss_faults: parsed.bad_checksum + parsed.malformed + parsed.oversize,
+                frames_refused: self.sensors.refused()
+                    + self.arm_ecu.refused()
+                    + self.drive_ecu.refused(),
+                ..self.tally
+            },
+        }
+    }
+
+    /// How the policy's task stands.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        self.policy.outcome()
+    }
+
+    /// True while no frame to the ECUs leaves and none is about to.
+    #[must_use]
+    pub const fn is_silent(&self) -> bool {
+        self.neutral_left == 0
+            && matches!(self.kernel.phase(), Phase::Disarmed | Phase::Blocked(_))
+            && matches!(self.order, Order::None)
+    }
+
+    /// Handles the newest epoch: records it on the bus, and says where the machine is if it can.
+    fn locate(&mut self, now: SimTime, out: &mut Outbox) -> Option<Located> {
+        let (at, epoch) = self.fresh.take()?;
+        let antenna = self.frame.to_local(epoch.position);
+        let sent = record(&epoch, antenna, now.since(at).as_secs_f64(), out);
+        self.note(sent);
+        self.quality = Some(epoch.quality);
+        let heading_rad = epoch.heading_rad?;
+        if epoch.quality.fix < Fix::ThreeD {
+            return None;
+        }
+        let attitude = self.sensors.attitude();
+        let pose = Pose::under_antenna(antenna, self.antenna_m, heading_rad, attitude);
+        let located = Located { at, pose, velocity_m_s: epoch.velocity_m_s };
+        self.located = Some(located);
+        self.tally.fixes += 1;
+        Some(located)
+    }
+
+    /// Asks the policy, if it is its time.
+    fn ask(&mut self, now: SimTime, located: Option<Located>) {
+        let observed_at = match self.policy.pace() {
+            Pace::Fix => located.map(|located| located.at),
+            Pace::Tick => self.sensors.oldest_at(),
+        };
+        let Some(observed_at) = observed_at.filter(|_| self.sensors.complete()) else { return };
+        let seen = self.observe(now);
+        self.request = Some(self.policy.act(&seen));
+        self.stamps.observation_ns = Some(observed_at.as_nanos());
+        self.stamps.policy_ns = Some(now.as_nanos());
+    }
+
+    fn observe(&mut self, now: SimTime) -> Observation {
+        let means = self.sensors.take_means();
+        let previous_action = match &self.request {
+            Some(request) => self.map.action(request, &means.stroke_m),
+            None => Action::default(),
+        };
+        let armed_at = self.armed_at.filter(|_| self.kernel.is_armed());
+        Observation {
+            at: now,
+            since_arming_s: armed_at.map(|at| now.since(at).as_secs_f64()),
+            located: self.located,
+            attitude: means.attitude,
+            stroke_m: means.stroke_m,
+            load_n: means.load_n,
+            wheel_speed_rad_s: means.wheel_speed_rad_s,
+            wheel_speed_m_s: means.wheel_speed_rad_s.mean() * self.wheel_radius_m,
+            front_joint_rad: means.front_joint_rad,
+            rear_joint_rad: means.rear_joint_rad,
+            previous_action,
+        }
+    }
+
+    fn input(&self) -> Input {
+        let order = if self.auto_arm && matches!(self.order, Order::None) {
+            Order::Arm
+        } else {
+            self.order
+        };
+        let sent = self.writer.sent();
+        Input {
+            order,
+            request: self.request,
+            measured: self.sensors.measured(),
+            arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
+            drive: self.drive_ecu.link(sent.map(|(_, drive)| drive)),
+            stamps: Stamps {
+                sensors_ns: self.sensors.oldest_at().map(SimTime::as_nanos),
+                ..self.stamps
+            },
+            bus_ok: self.bus_ok,
+        }
+    }
+
+    /// Keeps what changes with the kernel's phase.
+    fn follow(&mut self, now: SimTime, was: Phase) {
+        let is = self.kernel.phase();
+        if is == was {
+            return;
+        }
+        match is {
+            Phase::Handshake { .. } => {
+                // Once: after a hazard somebody has to look before it goes on.
+                self.auto_arm = false;
+                self.neutral_left = NEUTRAL_TICKS;
+            }
+            Phase::Armed => {
+                self.armed_at = Some(now);
+                self.neutral_left = NEUTRAL_TICKS;
+            }
+            Phase::Blocked(reason) => {
+                self.first_hazard.get_or_insert((now, reason));
+            }
+            Phase::Disarmed => {}
+        }
+    }
+
+    /// Frames that move nothing: through the handshake, and for a while after a stop.
+    fn stay_neutral(&mut self, out: &mut Outbox) -> Result<(), EncodeError> {
+        let shaking_hands = matches!(self.kernel.phase(), Phase::Handshake { .. });
+        if self.neutral_left == 0 || !self.bus_ok {
+            self.writer.silence();
+            return Ok(());
+        }
+        if !shaking_hands {
+            self.neutral_left -= 1;
+        }
+        let since_stop = NEUTRAL_TICKS - self.neutral_left;
+        let speed_m_s = self.sensors.wheel_speed_rad_s() * self.wheel_radius_m;
+        let standing = speed_m_s.abs() < STANDING_M_S;
+        let joint_rad = self.sensors.measured().front_angle_rad;
+        // Without a joint reading the middle is as good as any: neutral frames steer nothing.
+        let rest = Command::rest(if joint_rad.is_finite() { joint_rad } else { 0.0 });
+        let brake = standing || since_stop > BRAKE_BY_FORCE_TICKS;
+        self.writer.actuate(&Command { brake, ..rest }, Drive::Neutral, out)
+    }
+
+    fn note(&mut self, sent: Result<(), EncodeError>) {
+        self.tally.frames_unsent += u64::from(sent.is_err());
+    }
+}
+
+/// A fix in the log: position and velocity where there is a fix, its quality always.
+fn record(
+    epoch: &Epoch,
+    antenna: Enu,
+    latency_s: f64,
+    out: &mut Outbox,
+) -> Result<(), EncodeError> {
+    if epoch.quality.fix > Fix::None {
+        frames::position(antenna, out)?;
+        if let Some(heading_rad) = epoch.heading_rad {
+            frames::velocity(epoch.velocity_m_s, heading_rad, out)?;
+        }
+    }
+    frames::quality(&epoch.quality, latency_s, out)
+}
+
+impl core::fmt::Debug for Gateway {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Gateway").field("status", &self.status()).finish_non_exhaustive()
+    }
+}

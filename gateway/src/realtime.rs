@@ -1,0 +1,181 @@
+//! The loop: frames as they come, a tick every 10 ms on an absolute schedule, no spinning.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Status, policy};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use xt28_dbc::Outbox;
+use xt28_machine::{Machine, SimTime};
+
+use crate::args::Args;
+use crate::lateness::Lateness;
+use crate::problem::Problem;
+use crate::serial::SerialPort;
+use crate::wire::Wire;
+
+const TICK: Duration = Duration::from_millis(10);
+
+/// What a run came to.
+pub(crate) struct Finished {
+    pub(crate) status: Status,
+    pub(crate) lateness: Lateness,
+    pub(crate) interrupted: bool,
+    pub(crate) seconds: f64,
+}
+
+/// Runs until the policy is done, the time is over or a signal comes.
+pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
+    let machine = match &args.machine {
+        Some(path) => Machine::load(path)?,
+        None => Machine::xt28(),
+    };
+    let policy = policy::from_spec(&args.policy, &machine)?;
+    let port = match &args.gnss {
+        Some(path) => Some(
+            SerialPort::open(path)
+                .map_err(|source| Problem::OpenGnss { path: path.clone(), source })?,
+        ),
+        None if policy.pace() == Pace::Fix => return Err(Problem::NoGnss),
+        None => None,
+    };
+    let config = GatewayConfig { origin: args.origin, ..GatewayConfig::new(&machine) };
+    let interrupt = watch_signals().map_err(Problem::Signals)?;
+    let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
+    let gateway = Gateway::new(&machine, config, policy);
+    let run = Run { gateway, wire, port, interrupt, start: Instant::now(), ending: false };
+    run.until_done(args)
+}
+
+/// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting.
+fn watch_signals() -> std::io::Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&flag))?;
+        signal_hook::flag::register(signal, Arc::clone(&flag))?;
+    }
+    Ok(flag)
+}
+
+struct Run {
+    gateway: Gateway,
+    wire: Wire,
+    port: Option<SerialPort>,
+    interrupt: Arc<AtomicBool>,
+    start: Instant,
+    /// The order to disarm was given.
+    ending: bool,
+}
+
+impl Run {
+    fn until_done(mut self, args: &Args) -> Result<Finished, Problem> {
+        let mut lateness = Lateness::new();
+        let mut out = Outbox::with_capacity(8);
+        let mut bytes = [0; 4096];
+        let mut told = Phase::Disarmed;
+        let mut due = Duration::ZERO;
+        loop {
+            self.listen_until(due)?;
+            let now = self.start.elapsed();
+            lateness.note(now.saturating_sub(due));
+            self.read_gnss(&mut bytes)?;
+            self.tick(now, &mut out)?;
+            tell(now, &mut told, &self.gateway);
+            self.end_if_due(now, args);
+            if self.ending && self.gateway.is_silent() {
+                break;
+            }
+            due += TICK;
+            // The schedule is absolute; a tick whose successor is due already is not made up for.
+            let now = self.start.elapsed();
+            while due + TICK <= now {
+                due += TICK;
+                lateness.missed += 1;
+            }
+        }
+        let status = self.gateway.status();
+        let interrupted = self.interrupt.load(Ordering::Relaxed);
+        let seconds = self.start.elapsed().as_secs_f64();
+        self.wire.close()?;
+        Ok(Finished { status, lateness, interrupted, seconds })
+    }
+
+    /// Takes frames until `due`, asleep in between.
+    fn listen_until(&mut self, due: Duration) -> Result<(), Problem> {
+        loop {
+            while let Some(frame) = self.wire.receive()? {
+                self.gateway.on_frame(sim_time(self.start.elapsed()), &frame);
+            }
+            let left = due.saturating_sub(self.start.elapsed());
+            if left.is_zero() {
+                return Ok(());
+            }
+            self.wire.wait(left)?;
+        }
+    }
+
+    fn read_gnss(&mut self, bytes: &mut [u8]) -> Result<(), Problem> {
+        let Some(port) = &mut self.port else { return Ok(()) };
+        let now = sim_time(self.start.elapsed());
+        let lost = port
+            .drain(bytes, |bytes| self.gateway.on_gnss(now, bytes))
+            .map_err(Problem::ReadGnss)?;
+        if lost {
+            eprintln!("gateway: the receiver's port was closed");
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, now: Duration, out: &mut Outbox) -> Result<(), Problem> {
+        self.gateway.on_bus(self.wire.is_well());
+        out.clear();
+        // Receiver bytes and frames came in up to here.
+        let now = sim_time(now.max(self.start.elapsed()));
+        self.gateway.tick(now, out);
+        out.frames().iter().try_for_each(|frame| self.wire.send(now, frame))
+    }
+
+    /// Gives the order to disarm once, when there is a reason to stop.
+    fn end_if_due(&mut self, now: Duration, args: &Args) {
+        if self.ending {
+            return;
+        }
+        let seconds = now.as_secs_f64();
+        let status = self.gateway.status();
+        let task_over = matches!(status.outcome, Outcome::Reached | Outcome::Failed(_));
+        let over = match args.duration {
+            Some(duration) => seconds >= duration,
+            None => task_over || matches!(status.phase, Phase::Blocked(_)),
+        };
+        let never_armed = status.armed_at.is_none() && seconds >= args.arm_within;
+        if over || never_armed || self.interrupt.load(Ordering::Relaxed) {
+            self.ending = true;
+            // A block is an end of its own; its reason stays to be told.
+            if !matches!(status.phase, Phase::Blocked(_)) {
+                self.gateway.order(Order::Disarm);
+            }
+        }
+    }
+}
+
+/// Says on stderr when the safety kernel changes its phase.
+fn tell(now: Duration, told: &mut Phase, gateway: &Gateway) {
+    let phase = gateway.status().phase;
+    let news = core::mem::discriminant(&phase) != core::mem::discriminant(told);
+    *told = phase;
+    if !news {
+        return;
+    }
+    let seconds = now.as_secs_f64();
+    match phase {
+        Phase::Disarmed => eprintln!("{seconds:8.2} s  disarmed"),
+        Phase::Handshake { .. } => eprintln!("{seconds:8.2} s  handshake with both ECUs"),
+        Phase::Armed => eprintln!("{seconds:8.2} s  armed"),
+        Phase::Blocked(reason) => eprintln!("{seconds:8.2} s  stopped: {reason}"),
+    }
+}
+
+fn sim_time(since_start: Duration) -> SimTime {
+    SimTime::ZERO + since_start
+}

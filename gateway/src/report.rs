@@ -1,0 +1,80 @@
+//! The result of a run: for people on stderr, for scripts on stdout.
+
+use gateway::{Outcome, Status};
+use serde_json::{Value, json};
+
+use crate::realtime::Finished;
+
+/// Why the run did not do what it was for; `None` when it did.
+pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
+    let status = &finished.status;
+    if let Some((at, reason)) = status.first_hazard {
+        return Some(format!("safety stop at {at}: {reason}"));
+    }
+    if status.armed_at.is_none() {
+        return Some(
+            "never armed: both ECUs, all sensors and, for goto, the receiver must be alive".into(),
+        );
+    }
+    match &status.outcome {
+        Outcome::Failed(why) => Some(why.clone()),
+        Outcome::Running if finished.interrupted => Some("interrupted".to_owned()),
+        Outcome::Running => Some("the time was over before the task was".to_owned()),
+        Outcome::Reached | Outcome::Endless => None,
+    }
+}
+
+/// Two or three lines on stderr.
+pub(crate) fn tell(finished: &Finished) {
+    let Finished { status, lateness, seconds, .. } = finished;
+    match shortfall(finished) {
+        None => eprintln!("done in {seconds:.1} s"),
+        Some(why) => eprintln!("not done after {seconds:.1} s: {why}"),
+    }
+    if let Some(located) = &status.located {
+        let p = located.pose;
+        let heading_deg = p.heading_rad.to_degrees();
+        eprintln!(
+            "front axle at {:.2} m east, {:.2} m north, {heading_deg:.1} deg",
+            p.east_m, p.north_m
+        );
+    }
+    let (p99_ms, worst_ms) = (lateness.p99_ms(), lateness.worst_ms());
+    let (ticks, missed) = (lateness.ticks(), lateness.missed);
+    eprintln!(
+        "{ticks} ticks, {missed} missed; late below {p99_ms:.3} ms in 99 %, {worst_ms:.3} ms at worst"
+    );
+}
+
+/// The same as JSON.
+pub(crate) fn json(finished: &Finished) -> Value {
+    let Finished { status, lateness, interrupted, seconds } = finished;
+    let Status { counts, .. } = status;
+    let outcome = match &status.outcome {
+        Outcome::Endless => "endless",
+        Outcome::Running => "running",
+        Outcome::Reached => "reached",
+        Outcome::Failed(_) => "failed",
+    };
+    json!({
+        "pass": shortfall(finished).is_none(),
+        "reason": shortfall(finished),
+        "outcome": outcome,
+        "interrupted": interrupted,
+        "seconds": seconds,
+        "armed_at_s": status.armed_at.map(|at| at.as_secs_f64()),
+        "safety_stop": status.first_hazard.map(|(at, reason)| json!({
+            "at_s": at.as_secs_f64(), "reason": reason.to_string(),
+        })),
+        "front_axle": status.located.map(|located| json!({
+            "east_m": located.pose.east_m, "north_m": located.pose.north_m,
+            "heading_rad": located.pose.heading_rad,
+        })),
+        "lateness_ms": { "p99_below": lateness.p99_ms(), "worst": lateness.worst_ms() },
+        "ticks": { "run": lateness.ticks(), "missed": lateness.missed,
+                   "allowed": counts.allowed, "clamped": counts.clamped },
+        "fixes": { "used": counts.fixes, "incomplete": counts.fixes_incomplete },
+        "faults": { "gnss_stream": counts.gnss_faults, "frames_refused": counts.frames_refused,
+                    "frames_unsent": counts.frames_unsent },
+    })
+}

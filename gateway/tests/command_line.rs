@@ -1,0 +1,52 @@
+//! The binary refuses what it cannot do in one line and with exit code 2.
+
+use std::process::{Command, Output};
+
+fn gateway(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_gateway")).args(args).output().unwrap()
+}
+
+fn refusal(args: &[&str]) -> String {
+    let output = gateway(args);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {stderr}");
+    assert!(output.stdout.is_empty());
+    assert_eq!(stderr.lines().count(), 1, "{args:?}: {stderr}");
+    stderr
+}
+
+#[test]
+fn an_interface_that_does_not_exist() {
+    let error = refusal(&["--bus", "can99", "--policy", "hold"]);
+    assert!(error.starts_with("gateway: cannot open CAN interface \"can99\""), "{error}");
+}
+
+#[test]
+fn a_policy_that_does_not_exist_or_lacks_its_receiver() {
+    let error = refusal(&["--bus", "can99", "--policy", "dance"]);
+    assert!(error.contains("goto:X,Y,HEADING_DEG"), "{error}");
+    let error = refusal(&["--bus", "can99", "--policy", "goto:25,0,0"]);
+    assert!(error.contains("--gnss"), "{error}");
+    let port = ["--bus", "can99", "--policy", "goto:25,0,0", "--gnss", "/no/such/port"];
+    let error = refusal(&port);
+    assert!(error.contains("/no/such/port"), "{error}");
+}
+
+#[test]
+fn a_machine_file_with_an_unknown_key() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), "[masses]\narm_lb = 441.0\n").unwrap();
+    let path = file.path().to_str().unwrap();
+    let error = refusal(&["--bus", "can99", "--policy", "hold", "--machine", path]);
+    assert!(error.contains(":2:") && error.contains("arm_lb"), "{error}");
+}
+
+#[test]
+fn help_names_the_policies_and_the_exit_codes() {
+    let output = gateway(&["--help"]);
+    let help = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    for word in ["goto:", "script:", "hold", "Exit code", "--gnss"] {
+        assert!(help.contains(word), "{word}: {help}");
+    }
+}

@@ -37,7 +37,7 @@ pub(crate) struct Args {
           allow_hyphen_values = true)]
     pub(crate) origin: Geodetic,
 
-    /// Stop after this many seconds, done or not; the last second and a half are the stop
+    /// Order the stop after this many seconds, done or not; it takes another second and a half
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub(crate) duration: Option<f64>,
 

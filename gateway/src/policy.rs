@@ -4,6 +4,7 @@ mod goto;
 mod hold;
 mod levelling;
 mod path;
+mod pose_filter;
 mod script;
 mod script_file;
 mod spec;

@@ -21,6 +21,8 @@ struct Drive {
     overshoot_m: f64,
     top_speed_m_s: f64,
     seconds: f64,
+    /// Mean change of the joint target from fix to fix, deg.
+    chatter_deg: f64,
     attitude: Attitude,
 }
 
@@ -36,6 +38,7 @@ fn drive(goal: Pose, variant: Variant, ground: Attitude) -> Drive {
         overshoot_m: f64::MIN,
         top_speed_m_s: 0.0,
         seconds: 0.0,
+        chatter_deg: 0.0,
         attitude: ground,
     };
     let mut next_fix_s = 0.0;
@@ -43,7 +46,9 @@ fn drive(goal: Pose, variant: Variant, ground: Attitude) -> Drive {
         let now_s = tick as f64 * TICK_S;
         if now_s >= next_fix_s - 1e-9 {
             next_fix_s += 0.125;
+            let before_rad = command.front_angle_rad;
             command = policy.act(&vehicle.observe(SimTime::from_millis(10 * tick)));
+            result.chatter_deg += (command.front_angle_rad - before_rad).abs().to_degrees() / 300.0;
         }
         vehicle.step(&command);
         result.miss = vehicle.pose.to_local(&goal);
@@ -71,6 +76,7 @@ fn assert_reached(goal: Pose, variant: Variant) {
     assert!(turn_rad.abs() < REACHED_HEADING_RAD, "{goal:?} {variant:?}: {turn_rad}");
     assert!(drive.overshoot_m < 0.15, "{goal:?} {variant:?}: overshoot {}", drive.overshoot_m);
     assert!(drive.top_speed_m_s < 0.9, "{goal:?} {variant:?}: {}", drive.top_speed_m_s);
+    assert!(drive.chatter_deg < 1.0, "{goal:?} {variant:?}: {}", drive.chatter_deg);
     assert!(drive.seconds < 60.0, "{goal:?} {variant:?}: {} s", drive.seconds);
 }
 

@@ -10,10 +10,11 @@ use xt28_safety::{Arms, Command};
 
 use super::levelling::Levelling;
 use super::path::{Path, Point};
+use super::pose_filter::PoseFilter;
 use super::steering::Steering;
 use super::{Outcome, Pace, Policy};
 use crate::pose::wrap;
-use crate::{Located, Observation, Pose};
+use crate::{Observation, Pose};
 
 /// A pose counts as reached this close to it, m (paper 4.2).
 pub const REACHED_DISTANCE_M: f64 = 0.3;
@@ -54,6 +55,7 @@ pub struct Goto {
     goal: Pose,
     steering: Steering,
     levelling: Levelling,
+    filter: PoseFilter,
     speed_full_m_s: f64,
     stage: Stage,
     trim: f64,
@@ -80,6 +82,7 @@ impl Goto {
             goal,
             steering: Steering::new(machine),
             levelling: Levelling::new(machine),
+            filter: PoseFilter::new(machine),
             speed_full_m_s: machine.drive.speed_full_m_s,
             stage: Stage::Waiting,
             trim: 0.0,
@@ -88,22 +91,20 @@ impl Goto {
     }
 
     /// Throttle and front joint target.
-    fn drive(&mut self, seen: &Observation, located: &Located, dt_s: f64) -> (f64, f64) {
+    fn drive(&mut self, seen: &Observation, pose: &Pose, dt_s: f64) -> (f64, f64) {
         let Stage::Driving { path, along_m } = &mut self.stage else {
             return (0.0, seen.front_joint_rad);
         };
-        let on_path = path.nearest(&located.pose, *along_m);
+        let on_path = path.nearest(pose, *along_m);
         *along_m = along_m.max(on_path.along_m);
         let speed = seen.wheel_speed_m_s;
-        let [ahead_m, ..] = located.pose.to_local(&self.goal);
+        let [ahead_m, ..] = pose.to_local(&self.goal);
+        let along_left_m = path.length_m() - on_path.along_m;
         // Near the goal the path is as good as straight, and the projection is the finer measure.
-        let left_m = if ahead_m < 2.0 { ahead_m } else { path.length_m() - on_path.along_m };
+        let left_m = if along_left_m < 2.0 { ahead_m } else { along_left_m };
         let preview_m = speed.max(0.0) * STEERING_PREVIEW_S;
-        let curvature = curvature_per_m(
-            path.curvature_per_m(on_path.along_m + preview_m),
-            &on_path,
-            &located.pose,
-        );
+        let curvature =
+            curvature_per_m(path.curvature_per_m(on_path.along_m + preview_m), &on_path, pose);
         if left_m <= speed * DRIVE_DELAY_S {
             self.stage = Stage::Stopping { since: None };
             return (0.0, seen.front_joint_rad);
@@ -121,10 +122,10 @@ impl Goto {
     }
 
     /// Moves on to the stage that fits what is seen.
-    fn advance(&mut self, seen: &Observation, located: &Located) {
+    fn advance(&mut self, seen: &Observation, pose: &Pose) {
         match &mut self.stage {
             Stage::Waiting if seen.since_arming_s.is_some() => {
-                self.stage = self.depart(&located.pose);
+                self.stage = self.depart(pose);
             }
             Stage::Stopping { since } => {
                 let standing = seen.wheel_speed_m_s.abs() < STANDING_M_S;
@@ -132,7 +133,7 @@ impl Goto {
                 if !standing {
                     *since = None;
                 } else if seen.at.since(start).as_secs_f64() >= STANDING_S {
-                    self.stage = Stage::Ended(self.judge(&located.pose));
+                    self.stage = Stage::Ended(self.judge(pose));
                 }
             }
             Stage::Waiting | Stage::Driving { .. } | Stage::Ended(_) => {}
@@ -190,8 +191,9 @@ impl Policy for Goto {
             brake: false,
         };
         if let Some(located) = &seen.located {
-            self.advance(seen, located);
-            (command.throttle, command.front_angle_rad) = self.drive(seen, located, dt_s);
+            let pose = self.filter.step(&located.pose, seen, dt_s);
+            self.advance(seen, &pose);
+            (command.throttle, command.front_angle_rad) = self.drive(seen, &pose, dt_s);
         }
         if seen.since_arming_s.is_some() {
             command.arms = Arms::Position(self.levelling.step(seen, dt_s).0.map(Some));

@@ -2,8 +2,9 @@
 
 use xt28_machine::Machine;
 
-/// How fast the joint is to follow, 1/s (assumed: slow enough for the 0.5 s delay of the paper).
-const FOLLOW_RATE_S: f64 = 1.2;
+/// How fast the joint is to follow, 1/s (assumed: slow enough that the longest delay of the paper,
+/// 0.5 s, causes no swing).
+const FOLLOW_RATE_S: f64 = 0.7;
 
 /// The articulated steering, inverted.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +28,7 @@ impl Steering {
             behind_m: a.front_joint_x_m - machine.wheels.axle_x_m[1],
             angle_max_rad: a.angle_max_deg.to_radians(),
             // The ECU closes its loop in some 4 s, 3 m of road at cruise. Leading the target makes
-            // the joint follow in under one; the ECU's own law and limits stay in force.
+            // the joint follow in half of that; the ECU's own law and limits stay in force.
             lead: (FOLLOW_RATE_S / own_rate_s).clamp(1.0, 6.0),
         }
     }

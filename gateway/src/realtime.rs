@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
-use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Status, policy};
+use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Reason, Status, policy};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
@@ -22,6 +22,8 @@ pub(crate) struct Finished {
     pub(crate) status: Status,
     pub(crate) lateness: Lateness,
     pub(crate) interrupted: bool,
+    /// What last stood against arming, if it never came to that.
+    pub(crate) never_armed: Option<Reason>,
     pub(crate) seconds: f64,
 }
 
@@ -44,7 +46,15 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
     let interrupt = watch_signals().map_err(Problem::Signals)?;
     let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
     let gateway = Gateway::new(&machine, config, policy);
-    let run = Run { gateway, wire, port, interrupt, start: Instant::now(), ending: false };
+    let run = Run {
+        gateway,
+        wire,
+        port,
+        interrupt,
+        start: Instant::now(),
+        ending: false,
+        never_armed: None,
+    };
     run.until_done(args)
 }
 
@@ -66,6 +76,7 @@ struct Run {
     start: Instant,
     /// The order to disarm was given.
     ending: bool,
+    never_armed: Option<Reason>,
 }
 
 impl Run {
@@ -98,7 +109,7 @@ impl Run {
         let interrupted = self.interrupt.load(Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
         self.wire.close()?;
-        Ok(Finished { status, lateness, interrupted, seconds })
+        Ok(Finished { status, lateness, interrupted, never_armed: self.never_armed, seconds })
     }
 
     /// Takes frames until `due`, asleep in between.
@@ -151,6 +162,7 @@ impl Run {
         let never_armed = status.armed_at.is_none() && seconds >= args.arm_within;
         if over || never_armed || self.interrupt.load(Ordering::Relaxed) {
             self.ending = true;
+            self.never_armed = status.blocked.filter(|_| status.armed_at.is_none());
             // A block is an end of its own; its reason stays to be told.
             if !matches!(status.phase, Phase::Blocked(_)) {
                 self.gateway.order(Order::Disarm);

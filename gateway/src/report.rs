@@ -11,10 +11,8 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
     if let Some((at, reason)) = status.first_hazard {
         return Some(format!("safety stop at {at}: {reason}"));
     }
-    if status.armed_at.is_none() {
-        return Some(
-            "never armed: both ECUs, all sensors and, for goto, the receiver must be alive".into(),
-        );
+    if let Some(reason) = finished.never_armed {
+        return Some(format!("never armed: {reason}"));
     }
     match &status.outcome {
         Outcome::Failed(why) => Some(why.clone()),
@@ -48,7 +46,7 @@ pub(crate) fn tell(finished: &Finished) {
 
 /// The same as JSON.
 pub(crate) fn json(finished: &Finished) -> Value {
-    let Finished { status, lateness, interrupted, seconds } = finished;
+    let Finished { status, lateness, interrupted, seconds, .. } = finished;
     let Status { counts, .. } = status;
     let outcome = match &status.outcome {
         Outcome::Endless => "endless",

@@ -37,10 +37,10 @@ pub enum Fix {
     /// Nothing to drive by.
     #[default]
     None,
-    /// Two dimensions, or dead reckoning.
-    TwoD,
-    /// Three dimensions, metres.
-    ThreeD,
+    /// Satellites alone, metres.
+    Single,
+    /// With corrections to the code, some decimetres.
+    Differential,
     /// Carrier phase, decimetres.
     RtkFloat,
     /// Carrier phase with fixed ambiguities, centimetres and better.
@@ -130,9 +130,10 @@ fn fix(pvt: &NavPvt) -> Fix {
     match (pvt.fix_type, pvt.carrier) {
         (FixType::ThreeD | FixType::Combined, CarrierSolution::Fixed) => Fix::RtkFixed,
         (FixType::ThreeD | FixType::Combined, CarrierSolution::Float) => Fix::RtkFloat,
-        (FixType::ThreeD | FixType::Combined, _) => Fix::ThreeD,
-        (FixType::TwoD | FixType::DeadReckoning, _) => Fix::TwoD,
-        (FixType::None | FixType::TimeOnly | FixType::Reserved(_), _) => Fix::None,
+        (FixType::ThreeD | FixType::Combined, _) if pvt.differential => Fix::Differential,
+        (FixType::ThreeD | FixType::Combined, _) => Fix::Single,
+        // Without satellites, or with the height assumed, there is nothing to drive by.
+        _ => Fix::None,
     }
 }
 

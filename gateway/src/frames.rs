@@ -3,7 +3,8 @@
 use core::f64::consts::TAU;
 
 use xt28_dbc::messages::{
-    ArmTarget, ArmTargetMode, ArmValve, DriveTarget, GnssPosition, GnssQuality, GnssVelocity,
+    ArmTarget, ArmTargetMode, ArmValve, DriveTarget, GnssPosition, GnssQuality, GnssQualityFix,
+    GnssVelocity,
 };
 use xt28_dbc::{AliveCounter, EncodeError, Outbox};
 use xt28_safety::{Arms, Command};
@@ -87,7 +88,7 @@ impl FrameWriter {
         let enable = drive == Drive::Enabled;
         let target = DriveTarget {
             throttle_percent: if enable { command.throttle * 100.0 } else { 0.0 },
-            front_angle_deg: command.front_angle_rad.to_degrees(),
+            front_angle_deg: hundredths(command.front_angle_rad.to_degrees()),
             engine_speed_rpm: self.engine_speed_rpm,
             brake: command.brake,
             enable,
@@ -97,6 +98,12 @@ impl FrameWriter {
         self.sent = Some((arm_counter, drive_counter));
         Ok(())
     }
+}
+
+/// Rounded to what the wire resolves, so that 25 degrees come back from radians as 25 degrees and
+/// not as a bit more than the range has.
+fn hundredths(degrees: f64) -> f64 {
+    (degrees * 100.0).round() / 100.0
 }
 
 /// A stroke target as the wire has it: rounded to its step, or the value that holds.
@@ -120,7 +127,7 @@ pub(crate) fn velocity(
 ) -> Result<(), EncodeError> {
     let [east_mm_s, north_mm_s, up_mm_s] = velocity_m_s.map(|v| v * 1e3);
     // Rounded here, since 359.996 must become 0 and not 360.
-    let heading_deg = (heading_rad.rem_euclid(TAU).to_degrees() * 100.0).round() % 36_000.0 / 100.0;
+    let heading_deg = hundredths(heading_rad.rem_euclid(TAU).to_degrees()) % 360.0;
     out.push(GnssVelocity { east_mm_s, north_mm_s, up_mm_s, heading_deg }.encode()?);
     Ok(())
 }
@@ -133,11 +140,11 @@ pub(crate) fn quality(
 ) -> Result<(), EncodeError> {
     let frame = GnssQuality {
         fix: match quality.fix {
-            Fix::None => 0,
-            Fix::TwoD => 1,
-            Fix::ThreeD => 2,
-            Fix::RtkFloat => 3,
-            Fix::RtkFixed => 4,
+            Fix::None => GnssQualityFix::None,
+            Fix::Single => GnssQualityFix::Single,
+            Fix::Differential => GnssQualityFix::Differential,
+            Fix::RtkFloat => GnssQualityFix::RtkFloat,
+            Fix::RtkFixed => GnssQualityFix::RtkFixed,
         },
         satellites: quality.satellites,
         accuracy_mm: saturated(quality.accuracy_horizontal_m * 1e3),

@@ -191,7 +191,7 @@ impl Gateway {
         self.note(sent);
         self.quality = Some(epoch.quality);
         let heading_rad = epoch.heading_rad?;
-        if epoch.quality.fix < Fix::ThreeD {
+        if epoch.quality.fix == Fix::None {
             return None;
         }
         let attitude = self.sensors.attitude();

@@ -89,7 +89,7 @@ impl From<ArmStatus> for PeerReport {
             ArmStatusState::SafeStop => PeerState::SafeStop,
             ArmStatusState::Fault => PeerState::Fault,
         };
-        Self { state, accepted: status.accepted_counter, counter: status.counter }
+        Self { state, accepted: status.accepted, counter: status.counter }
     }
 }
 
@@ -102,6 +102,6 @@ impl From<DriveStatus> for PeerReport {
             DriveStatusState::SafeStop => PeerState::SafeStop,
             DriveStatusState::Fault => PeerState::Fault,
         };
-        Self { state, accepted: status.accepted_counter, counter: status.counter }
+        Self { state, accepted: status.accepted, counter: status.counter }
     }
 }

@@ -33,12 +33,7 @@ impl Command {
     /// Nothing moves: no throttle, arms off, brake on, joint as it stands at `front_angle_rad`.
     #[must_use]
     pub const fn rest(front_angle_rad: f64) -> Self {
-        Self {
-            throttle: 0.0,
-            front_angle_rad,
-            arms: Arms::Off,
-            brake: true,
-        }
+        Self { throttle: 0.0, front_angle_rad, arms: Arms::Off, brake: true }
     }
 
     /// True when no number in it is NaN or infinite.

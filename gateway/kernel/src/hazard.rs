@@ -14,11 +14,7 @@ pub(crate) fn before_arming(
         (Stream::ArmStatus, limits.status, input.arm.heard_at_ns),
         (Stream::DriveStatus, limits.status, input.drive.heard_at_ns),
         (Stream::Sensors, limits.sensors, stamps.sensors_ns),
-        (
-            Stream::Observation,
-            limits.observation,
-            stamps.observation_ns,
-        ),
+        (Stream::Observation, limits.observation, stamps.observation_ns),
         (Stream::Policy, limits.policy, stamps.policy_ns),
     ];
     if !limits.are_sound() {
@@ -68,10 +64,7 @@ pub(crate) fn while_armed(
     if !input.drive.ready {
         return Some(Reason::DriveEcuNotReady);
     }
-    if limits
-        .acknowledgement
-        .missed(Some(state.acknowledged_ns), now_ns)
-    {
+    if limits.acknowledgement.missed(Some(state.acknowledged_ns), now_ns) {
         return Some(Reason::NotAcknowledged);
     }
     None

@@ -63,9 +63,7 @@ impl Measured {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.stroke_m.iter().all(|s| s.is_finite())
-            && [self.front_angle_rad, self.roll_rad, self.pitch_rad]
-                .iter()
-                .all(|x| x.is_finite())
+            && [self.front_angle_rad, self.roll_rad, self.pitch_rad].iter().all(|x| x.is_finite())
     }
 }
 

@@ -22,26 +22,15 @@ pub(crate) fn hold(
         step: limits.angle_rate_rad_s * dt_s,
         error: limits.angle_error_rad,
     };
-    let front_angle_rad = angle.hold(
-        request.front_angle_rad,
-        last.front_angle_rad,
-        measured.front_angle_rad,
-    );
+    let front_angle_rad =
+        angle.hold(request.front_angle_rad, last.front_angle_rad, measured.front_angle_rad);
     let (arms, arms_clamped) = arms(limits, request, last, measured, dt_s);
     let clamps = Clamps {
         throttle: differs(throttle, request.throttle),
         steering: differs(front_angle_rad, request.front_angle_rad),
         arms: arms_clamped,
     };
-    (
-        Command {
-            throttle,
-            front_angle_rad,
-            arms,
-            brake: request.brake,
-        },
-        clamps,
-    )
+    (Command { throttle, front_angle_rad, arms, brake: request.brake }, clamps)
 }
 
 /// Free to fall towards zero, slow to grow; a change of direction passes zero.
@@ -51,11 +40,7 @@ fn throttle(limits: &Limits, request: &Command, last: f64, dt_s: f64) -> f64 {
     }
     let wanted = bound(request.throttle, -limits.throttle_max, limits.throttle_max);
     let step = limits.throttle_rate_s * dt_s;
-    let from = if wanted * last > 0.0 {
-        libm::fabs(last)
-    } else {
-        0.0
-    };
+    let from = if wanted * last > 0.0 { libm::fabs(last) } else { 0.0 };
     let magnitude = bound(libm::fabs(wanted), 0.0, from + step);
     libm::copysign(bound(magnitude, 0.0, limits.throttle_max), wanted)
 }

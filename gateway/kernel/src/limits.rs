@@ -100,30 +100,15 @@ impl Limits {
         angle_error_rad: 25.0 * DEGREE,
         roll_max_rad: 18.0 * DEGREE,
         pitch_max_rad: 25.0 * DEGREE,
-        status: Deadline {
-            period_ns: 10 * MILLISECOND_NS,
-            periods: 10,
-        },
-        sensors: Deadline {
-            period_ns: 10 * MILLISECOND_NS,
-            periods: 10,
-        },
-        observation: Deadline {
-            period_ns: 125 * MILLISECOND_NS,
-            periods: 3,
-        },
-        policy: Deadline {
-            period_ns: 125 * MILLISECOND_NS,
-            periods: 3,
-        },
-        acknowledgement: Deadline {
-            period_ns: 10 * MILLISECOND_NS,
-            periods: 10,
-        },
+        status: Deadline { period_ns: 10 * MILLISECOND_NS, periods: 10 },
+        sensors: Deadline { period_ns: 10 * MILLISECOND_NS, periods: 10 },
+        observation: Deadline { period_ns: 125 * MILLISECOND_NS, periods: 3 },
+        policy: Deadline { period_ns: 125 * MILLISECOND_NS, periods: 3 },
+        acknowledgement: Deadline { period_ns: 10 * MILLISECOND_NS, periods: 10 },
         handshake_steps: 10,
         handshake_max_ns: 5_000 * MILLISECOND_NS,
         counter_lag_max: 3,
-        counter_modulus: 15,
+        counter_modulus: 16,
         step_max_ns: 30 * MILLISECOND_NS,
     };
 

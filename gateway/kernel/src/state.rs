@@ -36,12 +36,7 @@ impl State {
     /// Disarmed, before the first step.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            phase: Phase::Disarmed,
-            last: Command::rest(0.0),
-            last_ns: 0,
-            acknowledged_ns: 0,
-        }
+        Self { phase: Phase::Disarmed, last: Command::rest(0.0), last_ns: 0, acknowledged_ns: 0 }
     }
 
     /// Where in its life it is.

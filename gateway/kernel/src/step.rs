@@ -18,25 +18,12 @@ pub fn step(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State
                 Order::Arm => hazard::before_arming(limits, &state, input, now_ns),
                 _ => None,
             };
-            (
-                State {
-                    last_ns: now_ns,
-                    ..state
-                },
-                Verdict::Block(why.unwrap_or(Reason::Disarmed)),
-            )
+            (State { last_ns: now_ns, ..state }, Verdict::Block(why.unwrap_or(Reason::Disarmed)))
         }
-        Phase::Blocked(reason) => (
-            State {
-                last_ns: now_ns,
-                ..state
-            },
-            Verdict::Block(reason),
-        ),
-        Phase::Handshake {
-            since_ns,
-            acknowledged,
-        } => shake_hands(limits, state, input, now_ns, since_ns, acknowledged),
+        Phase::Blocked(reason) => (State { last_ns: now_ns, ..state }, Verdict::Block(reason)),
+        Phase::Handshake { since_ns, acknowledged } => {
+            shake_hands(limits, state, input, now_ns, since_ns, acknowledged)
+        }
         Phase::Armed => pass(limits, state, input, now_ns),
     }
 }
@@ -51,10 +38,7 @@ fn obey(limits: &Limits, state: State, input: &Input, now_ns: u64) -> State {
         Order::Arm if matches!(state.phase(), Phase::Disarmed | Phase::Blocked(_)) => {
             match hazard::before_arming(limits, &state, input, now_ns) {
                 Some(_) => state,
-                None => state.go(Phase::Handshake {
-                    since_ns: now_ns,
-                    acknowledged: 0,
-                }),
+                None => state.go(Phase::Handshake { since_ns: now_ns, acknowledged: 0 }),
             }
         }
         Order::None | Order::Arm | Order::Release => state,
@@ -76,11 +60,7 @@ fn shake_hands(
         return block(state, Reason::HandshakeTimeout, now_ns);
     }
     let in_step = hazard::both_in_step(limits, input);
-    let acknowledged = if in_step {
-        acknowledged.saturating_add(1)
-    } else {
-        0
-    };
+    let acknowledged = if in_step { acknowledged.saturating_add(1) } else { 0 };
     if in_step && acknowledged >= limits.handshake_steps {
         let armed = State {
             last: standing(&input.measured),
@@ -90,17 +70,8 @@ fn shake_hands(
         };
         return pass(limits, armed, input, now_ns);
     }
-    let state = state.go(Phase::Handshake {
-        since_ns,
-        acknowledged,
-    });
-    (
-        State {
-            last_ns: now_ns,
-            ..state
-        },
-        Verdict::Block(Reason::Handshake),
-    )
+    let state = state.go(Phase::Handshake { since_ns, acknowledged });
+    (State { last_ns: now_ns, ..state }, Verdict::Block(Reason::Handshake))
 }
 
 /// The command that changes nothing: rates start from it, so arming is bumpless.
@@ -114,15 +85,9 @@ const fn standing(measured: &Measured) -> Command {
 }
 
 fn pass(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Verdict) {
-    let acknowledged_ns = if hazard::both_in_step(limits, input) {
-        now_ns
-    } else {
-        state.acknowledged_ns
-    };
-    let state = State {
-        acknowledged_ns,
-        ..state
-    };
+    let acknowledged_ns =
+        if hazard::both_in_step(limits, input) { now_ns } else { state.acknowledged_ns };
+    let state = State { acknowledged_ns, ..state };
     if let Some(reason) = hazard::while_armed(limits, &state, input, now_ns) {
         return block(state, reason, now_ns);
     }
@@ -134,25 +99,12 @@ fn pass(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Ve
     #[allow(clippy::cast_precision_loss)] // a few milliseconds
     let dt_s = dt_ns as f64 * 1e-9;
     let (command, clamps) = limit::hold(limits, &request, &state.last, &input.measured, dt_s);
-    let state = State {
-        last: command,
-        last_ns: now_ns,
-        ..state
-    };
-    let verdict = if clamps.any() {
-        Verdict::Clamp(command, clamps)
-    } else {
-        Verdict::Allow(command)
-    };
+    let state = State { last: command, last_ns: now_ns, ..state };
+    let verdict =
+        if clamps.any() { Verdict::Clamp(command, clamps) } else { Verdict::Allow(command) };
     (state, verdict)
 }
 
 fn block(state: State, reason: Reason, now_ns: u64) -> (State, Verdict) {
-    (
-        State {
-            last_ns: now_ns,
-            ..state.go(Phase::Blocked(reason))
-        },
-        Verdict::Block(reason),
-    )
+    (State { last_ns: now_ns, ..state.go(Phase::Blocked(reason)) }, Verdict::Block(reason))
 }

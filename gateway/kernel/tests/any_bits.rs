@@ -65,18 +65,9 @@ fn measured() -> impl Strategy<Value = Measured> {
 }
 
 fn link() -> impl Strategy<Value = Link> {
-    (
-        any::<Option<u64>>(),
-        any::<bool>(),
-        any::<Option<u8>>(),
-        any::<u8>(),
+    (any::<Option<u64>>(), any::<bool>(), any::<Option<u8>>(), any::<u8>()).prop_map(
+        |(heard_at_ns, ready, sent, accepted)| Link { heard_at_ns, ready, sent, accepted },
     )
-        .prop_map(|(heard_at_ns, ready, sent, accepted)| Link {
-            heard_at_ns,
-            ready,
-            sent,
-            accepted,
-        })
 }
 
 prop_compose! {
@@ -99,12 +90,7 @@ fn assert_within(limits: &Limits, command: &Command) {
     match command.arms {
         Arms::Off | Arms::Automatic => {}
         Arms::Position(s) => {
-            assert!(
-                s.iter()
-                    .flatten()
-                    .all(|s| (0.0..=limits.stroke_max_m).contains(s)),
-                "{s:?}"
-            );
+            assert!(s.iter().flatten().all(|s| (0.0..=limits.stroke_max_m).contains(s)), "{s:?}");
         }
         Arms::Valve(o) => assert!(o.iter().all(|o| o.abs() <= limits.opening_max), "{o:?}"),
     }
@@ -113,10 +99,7 @@ fn assert_within(limits: &Limits, command: &Command) {
 fn check(limits: &Limits, state: State, verdict: &Verdict) {
     match verdict.command() {
         Some(command) => {
-            assert!(
-                state.is_armed(),
-                "a command left a kernel that is not armed"
-            );
+            assert!(state.is_armed(), "a command left a kernel that is not armed");
             assert_within(limits, &command);
         }
         None => assert!(!state.is_armed(), "armed yet blocked"),

@@ -8,15 +8,9 @@ use xt28_safety::{Arms, Command, Order, Phase, Reason, Stream, Verdict};
 #[test]
 fn nothing_leaves_before_the_handshake_is_through() {
     let mut bench = Bench::new();
-    assert_eq!(
-        bench.run(Order::None, coast()),
-        Verdict::Block(Reason::Disarmed)
-    );
+    assert_eq!(bench.run(Order::None, coast()), Verdict::Block(Reason::Disarmed));
     for _ in 1..LIMITS.handshake_steps {
-        assert_eq!(
-            bench.run(Order::Arm, coast()),
-            Verdict::Block(Reason::Handshake)
-        );
+        assert_eq!(bench.run(Order::Arm, coast()), Verdict::Block(Reason::Handshake));
     }
     assert!(bench.run(Order::None, coast()).command().is_some());
 }
@@ -39,10 +33,7 @@ fn an_arm_order_with_a_dead_stream_stays_silent_and_says_why() {
     let mut bench = Bench::new();
     let mut input = bench.input(Order::Arm, coast());
     input.arm.heard_at_ns = None;
-    assert_eq!(
-        bench.feed(&input),
-        Verdict::Block(Reason::Stale(Stream::ArmStatus))
-    );
+    assert_eq!(bench.feed(&input), Verdict::Block(Reason::Stale(Stream::ArmStatus)));
     assert_eq!(bench.state.phase(), Phase::Disarmed);
 }
 
@@ -53,10 +44,7 @@ fn deadlines_hold_to_the_nanosecond() {
         let mut input = bench.input(Order::None, coast());
         input.drive.heard_at_ns = Some(bench.now_ns - LIMITS.status.span_ns() - late_ns);
         let verdict = bench.feed(&input);
-        assert_eq!(
-            verdict == Verdict::Block(Reason::Stale(Stream::DriveStatus)),
-            blocked
-        );
+        assert_eq!(verdict == Verdict::Block(Reason::Stale(Stream::DriveStatus)), blocked);
     }
 }
 
@@ -65,10 +53,7 @@ fn a_stamp_from_the_future_is_not_fresh() {
     let mut bench = Bench::armed();
     let mut input = bench.input(Order::None, coast());
     input.stamps.sensors_ns = Some(bench.now_ns + 1);
-    assert_eq!(
-        bench.feed(&input),
-        Verdict::Block(Reason::Stale(Stream::Sensors))
-    );
+    assert_eq!(bench.feed(&input), Verdict::Block(Reason::Stale(Stream::Sensors)));
 }
 
 #[test]
@@ -76,41 +61,22 @@ fn each_hazard_blocks_and_stays_blocked_until_re_armed() {
     type Spoil = fn(&mut xt28_safety::Input);
     let hazards: [(Spoil, Reason); 9] = [
         (|i| i.bus_ok = false, Reason::BusFault),
-        (
-            |i| i.stamps.observation_ns = None,
-            Reason::Stale(Stream::Observation),
-        ),
+        (|i| i.stamps.observation_ns = None, Reason::Stale(Stream::Observation)),
         (|i| i.stamps.policy_ns = None, Reason::Stale(Stream::Policy)),
-        (
-            |i| i.measured.stroke_m[3] = f64::NAN,
-            Reason::MeasurementNotFinite,
-        ),
+        (|i| i.measured.stroke_m[3] = f64::NAN, Reason::MeasurementNotFinite),
         (|i| i.measured.roll_rad = -19_f64.to_radians(), Reason::Roll),
-        (
-            |i| i.measured.pitch_rad = 26_f64.to_radians(),
-            Reason::Pitch,
-        ),
+        (|i| i.measured.pitch_rad = 26_f64.to_radians(), Reason::Pitch),
         (|i| i.arm.ready = false, Reason::ArmEcuNotReady),
         (|i| i.drive.ready = false, Reason::DriveEcuNotReady),
-        (
-            |i| i.request.as_mut().unwrap().throttle = f64::NAN,
-            Reason::RequestNotFinite,
-        ),
+        (|i| i.request.as_mut().unwrap().throttle = f64::NAN, Reason::RequestNotFinite),
     ];
     for (spoil, reason) in hazards {
         let mut bench = Bench::armed();
         let mut input = bench.input(Order::None, coast());
         spoil(&mut input);
         assert_eq!(bench.feed(&input), Verdict::Block(reason));
-        assert_eq!(
-            bench.run(Order::None, coast()),
-            Verdict::Block(reason),
-            "must latch"
-        );
-        assert_eq!(
-            bench.run(Order::Arm, coast()),
-            Verdict::Block(Reason::Handshake)
-        );
+        assert_eq!(bench.run(Order::None, coast()), Verdict::Block(reason), "must latch");
+        assert_eq!(bench.run(Order::Arm, coast()), Verdict::Block(Reason::Handshake));
     }
 }
 
@@ -136,14 +102,8 @@ fn an_emergency_stop_outlasts_orders_to_arm() {
     assert_eq!(bench.run(Order::EmergencyStop, coast()), stopped);
     assert_eq!(bench.run(Order::Arm, coast()), stopped);
     assert_eq!(bench.run(Order::Disarm, coast()), stopped);
-    assert_eq!(
-        bench.run(Order::Release, coast()),
-        Verdict::Block(Reason::Disarmed)
-    );
-    assert_eq!(
-        bench.run(Order::Arm, coast()),
-        Verdict::Block(Reason::Handshake)
-    );
+    assert_eq!(bench.run(Order::Release, coast()), Verdict::Block(Reason::Disarmed));
+    assert_eq!(bench.run(Order::Arm, coast()), Verdict::Block(Reason::Handshake));
 }
 
 #[test]
@@ -151,10 +111,8 @@ fn a_step_in_the_policy_is_a_ramp_at_the_arm() {
     let mut bench = Bench::armed();
     let mut before = 0.17;
     for tick in 0..20 {
-        let Some(Command {
-            arms: Arms::Position(s),
-            ..
-        }) = bench.run(Order::None, strokes(0.25)).command()
+        let Some(Command { arms: Arms::Position(s), .. }) =
+            bench.run(Order::None, strokes(0.25)).command()
         else {
             panic!("blocked at tick {tick}")
         };
@@ -172,10 +130,8 @@ fn a_target_leads_the_arm_by_no_more_than_its_error_limit() {
     for _ in 0..200 {
         bench.run(Order::None, strokes(0.25));
     }
-    let Some(Command {
-        arms: Arms::Position(s),
-        ..
-    }) = bench.run(Order::None, strokes(0.25)).command()
+    let Some(Command { arms: Arms::Position(s), .. }) =
+        bench.run(Order::None, strokes(0.25)).command()
     else {
         panic!("blocked")
     };
@@ -185,20 +141,14 @@ fn a_target_leads_the_arm_by_no_more_than_its_error_limit() {
 #[test]
 fn throttle_grows_slowly_and_falls_at_once() {
     let mut bench = Bench::armed();
-    let full = Command {
-        throttle: 1.0,
-        ..coast()
-    };
+    let full = Command { throttle: 1.0, ..coast() };
     let first = bench.run(Order::None, full).command().unwrap().throttle;
     assert!((first - 0.01).abs() < 1e-9, "{first}");
     for _ in 0..200 {
         bench.run(Order::None, full);
     }
     assert_eq!(bench.run(Order::None, full), Verdict::Allow(full));
-    let back = Command {
-        throttle: -1.0,
-        ..coast()
-    };
+    let back = Command { throttle: -1.0, ..coast() };
     let reverse = bench.run(Order::None, back).command().unwrap().throttle;
     assert!((reverse + 0.01).abs() < 1e-9, "{reverse}");
     assert_eq!(bench.run(Order::None, coast()), Verdict::Allow(coast()));
@@ -207,11 +157,7 @@ fn throttle_grows_slowly_and_falls_at_once() {
 #[test]
 fn the_brake_takes_the_throttle_away() {
     let mut bench = Bench::armed();
-    let both = Command {
-        throttle: 0.5,
-        brake: true,
-        ..coast()
-    };
+    let both = Command { throttle: 0.5, brake: true, ..coast() };
     let held = bench.run(Order::None, both).command().unwrap();
     assert!(held.throttle == 0.0 && held.brake);
 }
@@ -220,10 +166,7 @@ fn the_brake_takes_the_throttle_away() {
 fn a_valve_is_not_opened_against_an_end_stop() {
     let mut bench = Bench::armed();
     bench.measured.stroke_m = [0.249, 0.001, 0.1, 0.1, 0.1, 0.1];
-    let open = Command {
-        arms: Arms::Valve([0.2, -0.2, 0.2, -0.2, 0.9, -0.9]),
-        ..coast()
-    };
+    let open = Command { arms: Arms::Valve([0.2, -0.2, 0.2, -0.2, 0.9, -0.9]), ..coast() };
     let held = bench.run(Order::None, open).command().unwrap();
     assert_eq!(held.arms, Arms::Valve([0.0, 0.0, 0.2, -0.2, 0.3, -0.3]));
 }

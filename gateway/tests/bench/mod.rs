@@ -180,8 +180,8 @@ impl Bench {
             let status = ArmStatus {
                 mode: ArmStatusMode::Off,
                 state: ArmStatusState::Standby,
-                fault_bits: 0,
-                accepted_counter: self.accepted[0],
+                faults: 0,
+                accepted: self.accepted[0],
                 reason: ArmStatusReason::None,
                 supply_v: 24.0,
                 counter: self.counters[0].next(),
@@ -193,11 +193,11 @@ impl Bench {
         let state = if safe_stop { DriveStatusState::SafeStop } else { DriveStatusState::Standby };
         let status = DriveStatus {
             state,
-            fault_bits: 0,
-            accepted_counter: self.accepted[1],
+            faults: 0,
+            accepted: self.accepted[1],
             reason: DriveStatusReason::None,
             brake: false,
-            speed_mm_s: 0.0,
+            speed_m_s: 0.0,
             counter,
         };
         frames.push(status.encode().unwrap());

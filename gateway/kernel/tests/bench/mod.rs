@@ -18,18 +18,9 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn new() -> Self {
-        let measured = Measured {
-            stroke_m: [0.17; 6],
-            front_angle_rad: 0.0,
-            roll_rad: 0.0,
-            pitch_rad: 0.0,
-        };
-        Self {
-            state: State::new(),
-            now_ns: 1_000_000_000,
-            counter: 0,
-            measured,
-        }
+        let measured =
+            Measured { stroke_m: [0.17; 6], front_angle_rad: 0.0, roll_rad: 0.0, pitch_rad: 0.0 };
+        Self { state: State::new(), now_ns: 1_000_000_000, counter: 0, measured }
     }
 
     /// Armed, after an order and a whole handshake.
@@ -58,11 +49,7 @@ impl Bench {
             measured: self.measured,
             arm: link,
             drive: link,
-            stamps: Stamps {
-                sensors_ns: fresh,
-                observation_ns: fresh,
-                policy_ns: fresh,
-            },
+            stamps: Stamps { sensors_ns: fresh, observation_ns: fresh, policy_ns: fresh },
             bus_ok: true,
         }
     }
@@ -84,17 +71,9 @@ impl Bench {
 
 /// Roll on, arms held.
 pub(crate) fn coast() -> Command {
-    Command {
-        throttle: 0.0,
-        front_angle_rad: 0.0,
-        arms: Arms::Position([None; 6]),
-        brake: false,
-    }
+    Command { throttle: 0.0, front_angle_rad: 0.0, arms: Arms::Position([None; 6]), brake: false }
 }
 
 pub(crate) fn strokes(stroke_m: f64) -> Command {
-    Command {
-        arms: Arms::Position([Some(stroke_m); 6]),
-        ..coast()
-    }
+    Command { arms: Arms::Position([Some(stroke_m); 6]), ..coast() }
 }

@@ -1,1 +1,17 @@
 //! The database model behind generated and run-time codecs: parse, check, encode, decode, generate.
+//!
+//! One conversion serves both: a [`Field`] says where a number's bits are and turns raw into
+//! physical and back, rounding half away from zero and refusing what does not fit.
+#![forbid(unsafe_code)]
+
+mod check;
+mod database;
+mod field;
+mod generate;
+mod message;
+
+pub use check::Problem;
+pub use database::{Database, ReadError};
+pub use field::{Field, Kind, ValueError};
+pub use generate::{GenerateError, generate};
+pub use message::{CodecError, Message, Presence, Signal};

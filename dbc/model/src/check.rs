@@ -1,0 +1,127 @@
+//! What makes a database bad: found before a frame is built from it.
+
+use core::fmt;
+
+use crate::{Database, Message, Signal};
+
+/// Something wrong with a database.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The message, and the signal where it is one's fault.
+    pub place: String,
+    /// What is wrong, and what to do.
+    pub what: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.place, self.what)
+    }
+}
+
+/// Bit of the CRC byte of a protected message, and its length.
+const CRC_START: u16 = 56;
+
+impl Database {
+    /// Everything wrong with the database, in its order; empty for a good one. A database of
+    /// somebody else's may have problems and still decode; ours may have none.
+    #[must_use]
+    pub fn problems(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        for (i, message) in self.messages().iter().enumerate() {
+            let mut say = |signal: Option<&Signal>, what: String| {
+                let place = match signal {
+                    Some(signal) => format!("{}.{}", message.name, signal.name),
+                    None => message.name.clone(),
+                };
+                problems.push(Problem { place, what });
+            };
+            for other in &self.messages()[..i] {
+                if other.id == message.id {
+                    say(None, format!("has the identifier of {}; give it its own", other.name));
+                }
+                if other.name == message.name {
+                    say(None, "has the name of another message; rename one".to_owned());
+                }
+            }
+            check_message(message, &mut say);
+        }
+        problems
+    }
+}
+
+fn check_message(message: &Message, say: &mut impl FnMut(Option<&Signal>, String)) {
+    if message.period_ms == 0 {
+        say(None, "has no cycle time; set GenMsgCycleTime".to_owned());
+    }
+    if message.alive && !message.signals.iter().any(|s| s.name == "Counter" && s.field.length == 4)
+    {
+        say(None, "is to have an alive counter; add a 4-bit signal Counter".to_owned());
+    }
+    let is_crc = |s: &Signal| {
+        s.name == "Crc" && s.field.length == 8 && s.field.start == CRC_START && !s.field.big_endian
+    };
+    if message.data_id != 0 && !(message.len == 8 && message.signals.iter().any(is_crc)) {
+        say(None, "has a data ID but no CRC; add an 8-bit signal Crc in byte 7".to_owned());
+    }
+    for (i, signal) in message.signals.iter().enumerate() {
+        check_signal(message, signal, say);
+        for other in &message.signals[..i] {
+            if other.name == signal.name {
+                say(Some(signal), "has the name of another signal; rename one".to_owned());
+            }
+            if overlap(message, signal, other) {
+                say(Some(signal), format!("shares bits with {}; move one", other.name));
+            }
+        }
+    }
+}
+
+fn check_signal(message: &Message, signal: &Signal, say: &mut impl FnMut(Option<&Signal>, String)) {
+    let field = &signal.field;
+    if field.bits().any(|bit| bit >= u16::from(message.len) * 8) {
+        say(Some(signal), format!("reaches beyond the {} bytes of the frame", message.len));
+    }
+    if field.min > field.max {
+        say(
+            Some(signal),
+            format!("has its least value {} above its greatest {}", field.min, field.max),
+        );
+    }
+    let (low, high) = field.physical_range();
+    let slack = field.factor.abs() * 1e-6;
+    if field.min < low - slack || field.max > high + slack {
+        let (min, max) = (field.min, field.max);
+        say(Some(signal), format!("has range {min} to {max}, but its bits hold {low} to {high}"));
+    }
+    if let Some(presence) = &signal.present
+        && message.signal(&presence.switch).is_none_or(|switch| !switch.is_switch)
+    {
+        say(Some(signal), format!("is multiplexed by {}, which is no switch", presence.switch));
+    }
+}
+
+/// Signals that can never be there together may share bits.
+fn overlap(message: &Message, a: &Signal, b: &Signal) -> bool {
+    let apart = message.signals.iter().any(|switch| {
+        let ranges = |s: &Signal| ranges_under(message, s, &switch.name);
+        match (ranges(a), ranges(b)) {
+            (Some(a), Some(b)) => !a.iter().any(|x| b.iter().any(|y| x.0 <= y.1 && y.0 <= x.1)),
+            _ => false,
+        }
+    });
+    !apart && a.field.bits().any(|bit| b.field.bits().any(|other| bit == other))
+}
+
+/// Values of `switch` at which `signal` can be there; `None` if it does not depend on it.
+fn ranges_under(message: &Message, signal: &Signal, switch: &str) -> Option<Vec<(u64, u64)>> {
+    let mut signal = signal;
+    for _ in 0..=message.signals.len() {
+        let presence = signal.present.as_ref()?;
+        if presence.switch == switch {
+            return Some(presence.ranges.clone());
+        }
+        signal = message.signal(&presence.switch)?;
+    }
+    None
+}

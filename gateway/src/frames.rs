@@ -2,11 +2,12 @@
 
 use core::f64::consts::TAU;
 
+use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{
     ArmTarget, ArmTargetMode, ArmValve, DriveTarget, GnssPosition, GnssQuality, GnssQualityFix,
     GnssVelocity,
 };
-use xt28_dbc::{AliveCounter, EncodeError, Outbox};
+use xt28_dbc::{EncodeError, Outbox};
 use xt28_safety::{Arms, Command};
 use xt28_ubx::Enu;
 
@@ -59,7 +60,7 @@ impl FrameWriter {
         drive: Drive,
         out: &mut Outbox,
     ) -> Result<(), EncodeError> {
-        let (arm_counter, drive_counter) = (self.arm.next(), self.drive.next());
+        let (arm_counter, drive_counter) = (self.arm.next_count(), self.drive.next_count());
         let (mode, strokes) = match command.arms {
             Arms::Off => (ArmTargetMode::Off, [None; 6]),
             Arms::Automatic => (ArmTargetMode::Automatic, [None; 6]),
@@ -73,7 +74,7 @@ impl FrameWriter {
         if let Arms::Valve(openings) = command.arms {
             let [fr_percent, fl_percent, mr_percent, ml_percent, br_percent, bl_percent] =
                 openings.map(|opening| opening * 100.0);
-            let counter = self.valve.next();
+            let counter = self.valve.next_count();
             let valve = ArmValve {
                 fr_percent,
                 fl_percent,

@@ -1,7 +1,8 @@
 //! One ECU as the gateway knows it: is it alive, ready, and does it accept what we send?
 
+use xt28_dbc::DecodeError;
+use xt28_dbc::e2e::{Alive, AliveCheck};
 use xt28_dbc::messages::{ArmStatus, ArmStatusState, DriveStatus, DriveStatusState};
-use xt28_dbc::{Alive, AliveCheck, DecodeError};
 use xt28_machine::SimTime;
 use xt28_safety::Link;
 

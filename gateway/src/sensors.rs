@@ -1,11 +1,11 @@
 //! What the gateway hears from the machine's sensors, in SI.
 
 use xt28_dbc::Frame;
+use xt28_dbc::e2e::{Alive, AliveCheck};
 use xt28_dbc::messages::{
     Attitude as AttitudeFrame, CylLoadFront, CylLoadMidRear, PosFront, PosMidRear, WheelSpeedJoint,
     WheelSpeedSigned,
 };
-use xt28_dbc::{Alive, AliveCheck};
 use xt28_machine::{PerWheel, SimTime};
 use xt28_safety::Measured;
 

@@ -5,12 +5,13 @@
 use gateway::{Gateway, Status};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{
     ArmStatus, ArmStatusMode, ArmStatusReason, ArmStatusState, ArmTarget, ArmTargetMode, ArmValve,
     Attitude, CylLoadFront, CylLoadMidRear, DriveStatus, DriveStatusReason, DriveStatusState,
     DriveTarget, PosFront, PosMidRear, WheelSpeedJoint, WheelSpeedSigned,
 };
-use xt28_dbc::{AliveCounter, CanId, Frame, Outbox};
+use xt28_dbc::{CanId, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
 use xt28_safety::{Arms, Command};
 use xt28_ubx::{CarrierSolution, Enu, FixType, LocalFrame, NavHpPosLlh, NavPvt, NavRelPosNed};
@@ -150,13 +151,13 @@ impl Bench {
             o.wheel_speed_rad_s.0.map(|w| w * 60.0 / core::f64::consts::TAU);
         let roll_deg = self.faults.imu_roll_deg.unwrap_or(o.attitude.roll_rad.to_degrees());
         let pitch_deg = o.attitude.pitch_rad.to_degrees();
-        let counter = self.counters[2].next();
+        let counter = self.counters[2].next_count();
         let mut frames = vec![
             PosFront { fr_mm, fl_mm }.encode().unwrap(),
             PosMidRear { mr_mm, ml_mm, br_mm, bl_mm }.encode().unwrap(),
             CylLoadFront { fr_dan, fl_dan }.encode().unwrap(),
             CylLoadMidRear { mr_dan, ml_dan, br_dan, bl_dan }.encode().unwrap(),
-            Attitude { roll_deg, pitch_deg, mean_stroke_mm: 170.0, mean_stroke_rate: 0.0 }
+            Attitude { roll_deg, pitch_deg, mean_stroke_mm: 170.0, mean_stroke_rate: 0 }
                 .encode()
                 .unwrap(),
             WheelSpeedJoint {
@@ -184,11 +185,12 @@ impl Bench {
                 accepted: self.accepted[0],
                 reason: ArmStatusReason::None,
                 supply_v: 24.0,
-                counter: self.counters[0].next(),
+                counter: self.counters[0].next_count(),
             };
             frames.push(status.encode().unwrap());
         }
-        let counter = if self.faults.drive_status_stuck { 3 } else { self.counters[1].next() };
+        let counter =
+            if self.faults.drive_status_stuck { 3 } else { self.counters[1].next_count() };
         let safe_stop = self.faults.drive_ecu_safe_stop;
         let state = if safe_stop { DriveStatusState::SafeStop } else { DriveStatusState::Standby };
         let status = DriveStatus {

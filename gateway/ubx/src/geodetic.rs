@@ -57,11 +57,7 @@ impl Geodetic {
         let (sin_lon, cos_lon) = self.longitude_rad.sin_cos();
         let n = A_M / (1.0 - E2 * sin_lat * sin_lat).sqrt();
         let r = (n + self.height_m) * cos_lat;
-        [
-            r * cos_lon,
-            r * sin_lon,
-            (n * (1.0 - E2) + self.height_m) * sin_lat,
-        ]
+        [r * cos_lon, r * sin_lon, (n * (1.0 - E2) + self.height_m) * sin_lat]
     }
 
     /// Back from earth-centred coordinates by Bowring's formula on the reduced latitude.
@@ -81,11 +77,7 @@ impl Geodetic {
         // This form of the height is sound at the poles as well.
         let w = (1.0 - E2 * sin_lat * sin_lat).sqrt();
         let height_m = p * cos_lat + z * sin_lat - A_M * w;
-        Self {
-            latitude_rad,
-            longitude_rad: y.atan2(x),
-            height_m,
-        }
+        Self { latitude_rad, longitude_rad: y.atan2(x), height_m }
     }
 }
 
@@ -127,11 +119,7 @@ impl LocalFrame {
         let ecef = place.ecef_m();
         let d = [0, 1, 2].map(|i| ecef[i] - self.origin_ecef_m[i]);
         let along = |axis: [f64; 3]| axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-        Enu {
-            east_m: along(self.axes[0]),
-            north_m: along(self.axes[1]),
-            up_m: along(self.axes[2]),
-        }
+        Enu { east_m: along(self.axes[0]), north_m: along(self.axes[1]), up_m: along(self.axes[2]) }
     }
 
     /// A place of this frame on the ellipsoid.

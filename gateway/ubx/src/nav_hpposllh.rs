@@ -45,31 +45,10 @@ impl NavHpPosLlh {
         p.put(4, self.time_of_week_ms.to_le_bytes());
         let position = &self.position;
         for (coarse_at, fine_at, field, value, coarse_per_unit, fine_per_coarse) in [
-            (
-                8,
-                24,
-                "longitude",
-                position.longitude_rad / DEGREE,
-                1e7,
-                100.0,
-            ),
-            (
-                12,
-                25,
-                "latitude",
-                position.latitude_rad / DEGREE,
-                1e7,
-                100.0,
-            ),
+            (8, 24, "longitude", position.longitude_rad / DEGREE, 1e7, 100.0),
+            (12, 25, "latitude", position.latitude_rad / DEGREE, 1e7, 100.0),
             (16, 26, "height", position.height_m, 1e3, 10.0),
-            (
-                20,
-                27,
-                "height above sea level",
-                self.height_msl_m,
-                1e3,
-                10.0,
-            ),
+            (20, 27, "height above sea level", self.height_msl_m, 1e3, 10.0),
         ] {
             let (coarse, fine) = split(value, coarse_per_unit, fine_per_coarse)
                 .ok_or(EncodeError::Range { field, value })?;
@@ -117,8 +96,5 @@ impl NavHpPosLlh {
 pub(crate) fn split(value: f64, coarse_per_unit: f64, fine_per_coarse: f64) -> Option<(i32, i8)> {
     let fine_steps = (value * coarse_per_unit * fine_per_coarse).round();
     let coarse = (fine_steps / fine_per_coarse).trunc();
-    Some((
-        i32::nearest(coarse)?,
-        i8::nearest(fine_steps - coarse * fine_per_coarse)?,
-    ))
+    Some((i32::nearest(coarse)?, i8::nearest(fine_steps - coarse * fine_per_coarse)?))
 }

@@ -140,10 +140,7 @@ impl NavPvt {
         ] {
             p.put(at, steps::<i32>(field, metres, 1e3)?.to_le_bytes());
         }
-        p.put(
-            64,
-            steps::<i32>("course", self.course_rad / DEGREE, 1e5)?.to_le_bytes(),
-        );
+        p.put(64, steps::<i32>("course", self.course_rad / DEGREE, 1e5)?.to_le_bytes());
         for (at, field, metres) in [
             (40, "horizontal accuracy", self.accuracy_horizontal_m),
             (44, "vertical accuracy", self.accuracy_vertical_m),
@@ -153,10 +150,7 @@ impl NavPvt {
         }
         let course = steps::<u32>("course accuracy", self.accuracy_course_rad / DEGREE, 1e5)?;
         p.put(72, course.to_le_bytes());
-        p.put(
-            76,
-            steps::<u16>("dilution", self.dilution, 1e2)?.to_le_bytes(),
-        );
+        p.put(76, steps::<u16>("dilution", self.dilution, 1e2)?.to_le_bytes());
         frame::write(Self::CLASS, Self::ID, &p.0, bytes);
         Ok(())
     }
@@ -199,12 +193,7 @@ impl NavPvt {
         let utc = &self.utc;
         p.put(0, self.time_of_week_ms.to_le_bytes());
         p.put(4, utc.year.to_le_bytes());
-        p.put(
-            6,
-            [
-                utc.month, utc.day, utc.hour, utc.minute, utc.second, utc.valid,
-            ],
-        );
+        p.put(6, [utc.month, utc.day, utc.hour, utc.minute, utc.second, utc.valid]);
         p.put(16, utc.nanosecond.to_le_bytes());
     }
 

@@ -81,10 +81,7 @@ impl NavRelPosNed {
             p.put(coarse_at, centimetres.to_le_bytes());
             p.put(fine_at, tenths.to_le_bytes());
         }
-        p.put(
-            24,
-            steps::<i32>("heading", self.heading_rad / DEGREE, 1e5)?.to_le_bytes(),
-        );
+        p.put(24, steps::<i32>("heading", self.heading_rad / DEGREE, 1e5)?.to_le_bytes());
         for (at, field, metres) in [
             (36, "accuracy north", self.accuracy_north_m),
             (40, "accuracy east", self.accuracy_east_m),
@@ -93,11 +90,8 @@ impl NavRelPosNed {
         ] {
             p.put(at, steps::<u32>(field, metres, 1e4)?.to_le_bytes());
         }
-        let heading = steps::<u32>(
-            "accuracy of the heading",
-            self.accuracy_heading_rad / DEGREE,
-            1e5,
-        )?;
+        let heading =
+            steps::<u32>("accuracy of the heading", self.accuracy_heading_rad / DEGREE, 1e5)?;
         p.put(52, heading.to_le_bytes());
         p.put(60, self.flags().to_le_bytes());
         frame::write(Self::CLASS, Self::ID, &p.0, bytes);

@@ -12,10 +12,7 @@ fn a_degree_of_latitude_is_as_long_as_the_meridian_says() {
     let e2 = 6.694_379_990_14e-3_f64;
     let s = 59.8_f64.to_radians().sin();
     let radius = 6_378_137.0 * (1.0 - e2) / (1.0 - e2 * s * s).powf(1.5);
-    assert!(
-        (north.north_m - step_deg.to_radians() * radius).abs() < 1e-4,
-        "{north:?}"
-    );
+    assert!((north.north_m - step_deg.to_radians() * radius).abs() < 1e-4, "{north:?}");
     assert!(north.east_m.abs() < 1e-9);
 }
 
@@ -23,15 +20,9 @@ fn a_degree_of_latitude_is_as_long_as_the_meridian_says() {
 fn east_is_east_and_up_is_up() {
     let frame = LocalFrame::default();
     let origin = frame.origin();
-    let east = frame.to_local(Geodetic {
-        longitude_rad: origin.longitude_rad + 1e-6,
-        ..origin
-    });
+    let east = frame.to_local(Geodetic { longitude_rad: origin.longitude_rad + 1e-6, ..origin });
     assert!(east.east_m > 3.0 && east.north_m.abs() < 1e-3, "{east:?}");
-    let up = frame.to_local(Geodetic {
-        height_m: origin.height_m + 2.0,
-        ..origin
-    });
+    let up = frame.to_local(Geodetic { height_m: origin.height_m + 2.0, ..origin });
     assert!((up.up_m - 2.0).abs() < 1e-8, "{up:?}");
 }
 

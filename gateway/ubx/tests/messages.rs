@@ -81,11 +81,7 @@ fn nav_relposned_sits_where_the_interface_description_puts_it() {
 #[test]
 fn the_fine_position_resolves_a_tenth_of_a_millimetre() {
     let position = Geodetic::from_degrees(59.800_123_456_7, -17.900_432_198_7, -0.000_1);
-    let fine = NavHpPosLlh {
-        valid: true,
-        position,
-        ..NavHpPosLlh::default()
-    };
+    let fine = NavHpPosLlh { valid: true, position, ..NavHpPosLlh::default() };
     let bytes = bytes_of(Message::HpPosLlh(fine));
     let Some(Message::HpPosLlh(read)) = Parser::new().push(&bytes).next() else {
         panic!("no message")
@@ -99,16 +95,8 @@ fn the_fine_position_resolves_a_tenth_of_a_millimetre() {
 #[test]
 fn what_does_not_fit_is_refused_and_nothing_is_written() {
     let mut bytes = vec![1, 2];
-    let bad = NavPvt {
-        velocity_east_m_s: f64::NAN,
-        ..pvt()
-    };
-    assert!(
-        bad.encode(&mut bytes)
-            .unwrap_err()
-            .to_string()
-            .contains("velocity east")
-    );
+    let bad = NavPvt { velocity_east_m_s: f64::NAN, ..pvt() };
+    assert!(bad.encode(&mut bytes).unwrap_err().to_string().contains("velocity east"));
     assert_eq!(bytes, [1, 2]);
 }
 
@@ -143,12 +131,7 @@ fn a_wrong_version_and_an_unused_kind_are_counted_apart() {
     relative[70..].copy_from_slice(&sum);
     let mut parser = Parser::new();
     assert_eq!(parser.push(&relative).count(), 0);
-    assert_eq!(
-        parser
-            .push(&[0xB5, 0x62, 0x0A, 0x04, 0, 0, 0x0E, 0x34])
-            .count(),
-        0
-    );
+    assert_eq!(parser.push(&[0xB5, 0x62, 0x0A, 0x04, 0, 0, 0x0E, 0x34]).count(), 0);
     assert_eq!((parser.counts().malformed, parser.counts().other), (1, 1));
 }
 

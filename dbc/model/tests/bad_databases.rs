@@ -1,0 +1,150 @@
+//! Databases with one thing wrong each: refused, with the place and the remedy.
+
+use proptest::prelude::*;
+use xt28_dbc_model::{Database, generate};
+
+const GOOD: &str = r#"VERSION ""
+
+NS_ :
+
+BS_:
+
+BU_: A B
+
+BO_ 2147483905 Target: 8 A
+ SG_ Stroke : 0|8@1+ (2,0) [0|510] "mm" B
+ SG_ Throttle : 8|16@1- (0.1,0) [-100|100] "%" B
+ SG_ Counter : 52|4@1+ (1,0) [0|15] "" B
+ SG_ Crc : 56|8@1+ (1,0) [0|255] "" B
+
+BA_DEF_ BO_ "GenMsgCycleTime" INT 0 65535;
+BA_DEF_ BO_ "E2eDataId" INT 0 65535;
+BA_DEF_ BO_ "AliveCounter" INT 0 1;
+BA_DEF_DEF_ "GenMsgCycleTime" 0;
+BA_DEF_DEF_ "E2eDataId" 0;
+BA_DEF_DEF_ "AliveCounter" 0;
+BA_ "GenMsgCycleTime" BO_ 2147483905 10;
+BA_ "E2eDataId" BO_ 2147483905 16423;
+BA_ "AliveCounter" BO_ 2147483905 1;
+"#;
+
+fn refusal(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    let database = Database::parse(&GOOD.replacen(from, to, 1), "bad.dbc").unwrap();
+    generate(&database).unwrap_err().to_string()
+}
+
+#[test]
+fn the_good_one_is_good() {
+    let database = Database::parse(GOOD, "good.dbc").unwrap();
+    assert_eq!(database.problems(), []);
+    let source = generate(&database).unwrap();
+    assert!(source.contains("pub stroke_mm: f64"), "{source}");
+    assert!(source.contains("pub throttle_percent: f64"), "{source}");
+    assert!(source.contains("pub counter: u8"), "{source}");
+}
+
+#[test]
+fn each_fault_is_named_with_its_remedy() {
+    let cases = [
+        ("8|16@1-", "4|16@1-", "Target.Throttle: shares bits with Stroke; move one"),
+        ("52|4@1+", "60|8@1+", "Target.Counter: reaches beyond the 8 bytes of the frame"),
+        ("[0|510]", "[0|512]", "Target.Stroke: has range 0 to 512, but its bits hold 0 to 510"),
+        (
+            "[-100|100]",
+            "[100|-100]",
+            "Target.Throttle: has its least value 100 above its greatest -100",
+        ),
+        (
+            "BO_ 2147483905 10;",
+            "BO_ 2147483905 0;",
+            "Target: has no cycle time; set GenMsgCycleTime",
+        ),
+        (
+            "SG_ Counter",
+            "SG_ Count",
+            "Target: is to have an alive counter; add a 4-bit signal Counter",
+        ),
+        (
+            "SG_ Crc : 56|8",
+            "SG_ Crc : 48|4",
+            "Target: has a data ID but no CRC; add an 8-bit signal Crc in byte 7",
+        ),
+        ("SG_ Throttle", "SG_ Stroke", "Target.Stroke: has the name of another signal; rename one"),
+    ];
+    for (from, to, expected) in cases {
+        let error = refusal(from, to);
+        assert!(error.lines().any(|line| line == expected), "{from} -> {to}: {error}");
+    }
+}
+
+#[test]
+fn two_messages_may_not_share_an_identifier() {
+    let twice = GOOD.replacen(
+        "BA_DEF_ BO_ \"Gen",
+        "BO_ 2147483905 Again: 8 A\n SG_ X : 0|8@1+ (1,0) [0|255] \"\" B\n\nBA_DEF_ BO_ \"Gen",
+        1,
+    );
+    let database = Database::parse(&twice, "bad.dbc").unwrap();
+    let error = generate(&database).unwrap_err().to_string();
+    assert!(error.contains("Again: has the identifier of Target"), "{error}");
+}
+
+#[test]
+fn multiplexing_is_refused_loudly_by_the_generator_and_read_at_run_time() {
+    let text = GOOD.replacen("SG_ Stroke :", "SG_ Stroke M :", 1).replacen(
+        "SG_ Throttle :",
+        "SG_ Throttle m3 :",
+        1,
+    );
+    let database = Database::parse(&text, "mux.dbc").unwrap();
+    let error = generate(&database).unwrap_err().to_string();
+    assert!(error.starts_with("Target.Throttle: a multiplexed signal; read"), "{error}");
+    let message = database.message_named("Target").unwrap();
+    assert_eq!(message.decode(&[3, 0, 0, 0, 0, 0, 0, 0]).unwrap().len(), 4);
+    assert_eq!(message.decode(&[4, 0, 0, 0, 0, 0, 0, 0]).unwrap().len(), 3);
+}
+
+#[test]
+fn a_syntax_error_is_named_with_file_and_line() {
+    let line = GOOD.lines().position(|l| l.contains("Throttle")).unwrap() + 1;
+    let error = Database::parse(&GOOD.replacen("8|16@1-", "8|16@", 1), "bad.dbc").unwrap_err();
+    assert_eq!((error.file.as_str(), error.line), ("bad.dbc", line), "{error}");
+    assert!(!error.to_string().contains('\n'), "{error}");
+}
+
+#[test]
+fn a_factor_of_zero_is_refused_with_its_line() {
+    let error = Database::parse(&GOOD.replacen("(2,0)", "(0,0)", 1), "bad.dbc").unwrap_err();
+    assert!(error.to_string().starts_with("bad.dbc:9: Target.Stroke: factor"), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read_or_refused(text in "\\PC{0,200}") {
+        let _ = Database::parse(&text, "any.dbc");
+    }
+
+    #[test]
+    fn a_damaged_database_never_panics(at in 0_usize..600, by in "\\PC{0,4}", cut in 0_usize..8) {
+        let at = at.min(GOOD.len());
+        let end = (at + cut).min(GOOD.len());
+        let text = format!("{}{}{}", &GOOD[..at], by, &GOOD[end..]);
+        if let Ok(database) = Database::parse(&text, "any.dbc") {
+            let _ = generate(&database);
+            for message in database.messages() {
+                let _ = message.decode(&[0xA5; 8]);
+            }
+        }
+    }
+
+    #[test]
+    fn any_frame_is_decoded_or_refused(data in prop::collection::vec(any::<u8>(), 0..12)) {
+        let database = Database::parse(GOOD, "good.dbc").unwrap();
+        let message = database.message_named("Target").unwrap();
+        if let Ok(values) = message.decode(&data) {
+            let named: Vec<(&str, f64)> = values.iter().map(|(s, v)| (s.name.as_str(), *v)).collect();
+            prop_assert_eq!(message.decode(&message.encode(&named).unwrap()).unwrap(), values);
+        }
+    }
+}

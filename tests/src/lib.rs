@@ -35,4 +35,4 @@ pub use scenario::{Event, Ground, Node, Scenario, Script};
 pub use series::{Sample, Series};
 pub use setup::Setup;
 pub use trace::Trace;
-pub use truth::Truth;
+pub use truth::{Truth, TruthError};

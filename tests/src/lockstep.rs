@@ -74,7 +74,7 @@ impl<W: Write> Lockstep<W> {
         bus.enable_tap();
         let config = EmulatorConfig::new(machine.clone(), setup.terrain(), Some(*seed));
         let emulator = (bus.attach("emulator"), Emulator::new(&config));
-        let gateway = Gateway::new(machine, GatewayConfig::default(), policy);
+        let gateway = Gateway::new(machine, GatewayConfig::new(machine), policy);
         let gateway = (bus.attach("gateway"), gateway);
         let instant = |seconds| SimTime::ZERO + Duration::from_secs_f64(seconds);
         Ok(Self {

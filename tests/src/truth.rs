@@ -1,6 +1,8 @@
 //! What was true of the plant during a run: what no bus carries, and only a simulator knows.
 
-use xt28_machine::PerWheel;
+use std::io::{self, BufRead};
+
+use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::VehicleState;
 
 use crate::Series;
@@ -12,9 +14,107 @@ pub struct Truth {
     pub ground_force_n: Series<PerWheel<f64>>,
 }
 
+/// Why a truth file was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum TruthError {
+    /// The file could not be read.
+    #[error("{name}:{line}: cannot read: {source}")]
+    Read {
+        /// The file.
+        name: String,
+        /// Line, from 1.
+        line: usize,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A column is missing or a field is no number.
+    #[error("{name}:{line}: no number in column {column}; the emulator's --truth writes this file")]
+    Column {
+        /// The file.
+        name: String,
+        /// Line, from 1.
+        line: usize,
+        /// The column.
+        column: String,
+    },
+}
+
 impl Truth {
     /// Adds the plant's state at `at_s`.
     pub fn push(&mut self, at_s: f64, state: &VehicleState) {
         self.ground_force_n.push(at_s, state.ground_force_n);
+    }
+
+    /// From the CSV that the emulator writes; its time zero is `start_s` on the run's clock. A last
+    /// line that was cut is left out: the emulator may have died.
+    ///
+    /// # Errors
+    /// [`TruthError`], with file and line.
+    pub fn read(csv: impl BufRead, name: &str, start_s: f64) -> Result<Self, TruthError> {
+        let mut truth = Self::default();
+        let mut columns: Vec<String> = Vec::new();
+        let mut lines = csv.lines().enumerate().peekable();
+        while let Some((index, text)) = lines.next() {
+            let line = index + 1;
+            let text =
+                text.map_err(|source| TruthError::Read { name: name.to_owned(), line, source })?;
+            if columns.is_empty() {
+                columns = text.split(',').map(str::to_owned).collect();
+                continue;
+            }
+            let fields: Vec<&str> = text.split(',').collect();
+            if fields.len() < columns.len() && lines.peek().is_none() {
+                break;
+            }
+            let number = |column: &str| {
+                let at = columns.iter().position(|c| c == column);
+                at.and_then(|at| fields.get(at)?.parse::<f64>().ok()).ok_or_else(|| {
+                    let (name, column) = (name.to_owned(), column.to_owned());
+                    TruthError::Column { name, line, column }
+                })
+            };
+            let mut force_n = PerWheel::splat(0.0);
+            for wheel in Wheel::ALL {
+                force_n[wheel] = number(&format!("ground_{}_n", wheel.name().to_lowercase()))?;
+            }
+            truth.ground_force_n.push(number("time_s")? + start_s, force_n);
+        }
+        Ok(truth)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ecu_emu::{TRUTH_HEADER, write_truth_row};
+    use xt28_machine::SimTime;
+
+    fn csv() -> String {
+        let ground_force_n = PerWheel([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let state = VehicleState { ground_force_n, ..VehicleState::default() };
+        let mut csv = format!("{TRUTH_HEADER}\n").into_bytes();
+        for tick in 0..3 {
+            write_truth_row(&mut csv, SimTime::from_millis(tick * 10), &state).unwrap();
+        }
+        String::from_utf8(csv).unwrap()
+    }
+
+    #[test]
+    fn reads_what_the_emulator_writes() {
+        let truth = Truth::read(csv().as_bytes(), "t.csv", -2.0).unwrap();
+        let samples = truth.ground_force_n.samples();
+        assert_eq!(samples.len(), 3);
+        assert_eq!(samples[0].at_s, -2.0);
+        assert_eq!(samples[0].value, PerWheel([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    }
+
+    #[test]
+    fn a_cut_last_line_is_left_out_and_a_bad_one_is_named() {
+        let csv = csv();
+        let cut = Truth::read(csv[..csv.len() - 12].as_bytes(), "t.csv", 0.0).unwrap();
+        assert_eq!(cut.ground_force_n.samples().len(), 2);
+        let bad = csv.replacen("\n0.010", "\nten", 1);
+        let error = Truth::read(bad.as_bytes(), "t.csv", 0.0).unwrap_err().to_string();
+        assert!(error.starts_with("t.csv:3: no number in column time_s"), "{error}");
     }
 }

@@ -6,6 +6,10 @@
 mod artefacts;
 mod config;
 mod pace;
+#[cfg(target_os = "linux")]
+mod processes;
+#[cfg(not(target_os = "linux"))]
+#[path = "no_processes.rs"]
 mod processes;
 mod run;
 mod scenarios;

@@ -11,20 +11,20 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use program::Program;
+use program::{Output, Program};
 use xt28_bus::SocketCan;
 use xt28_machine::SimTime;
-use xt28_scenarios::{Cost, Ground, Node, Recording, Setup, sha256};
+use xt28_scenarios::{Cost, Ground, Node, Recording, Setup, Truth, sha256};
 
 use crate::Failure;
 use crate::artefacts::Artefacts;
 
 /// How long candump may take to open its socket. It does not say when it has.
 const CANDUMP_START: Duration = Duration::from_millis(300);
+/// How much longer than the run the gateway is let, s.
+const BEYOND_S: f64 = 60.0;
 /// How often the programs are looked after.
 const WATCH: Duration = Duration::from_millis(50);
-/// What the last frames may take to reach candump's file.
-const LAST_FRAMES: Duration = Duration::from_millis(100);
 
 /// Runs `setup` on the CAN interface `bus`, in real time, and reads back what candump logged.
 pub(crate) fn run(
@@ -42,24 +42,37 @@ pub(crate) fn run(
     let wall_s = begun.elapsed().as_secs_f64();
 
     let name = log.display().to_string();
-    let trace = Recording::read(BufReader::new(File::open(&log)?), &name, start)?;
+    let trace = Recording::read(BufReader::new(File::open(&log)?), &name, start.run)?;
+    let truth = folder.path.join(TRUTH);
+    let ahead_s = start.run.since(start.emulator).as_secs_f64();
+    let truth = Truth::read(BufReader::new(File::open(&truth)?), TRUTH, -ahead_s)?;
     let log_sha256 = sha256(&fs::read(&log)?);
-    let recording = Recording { trace, truth: None, log_sha256, bus_load: None };
+    let recording = Recording { trace, truth: Some(truth), log_sha256, bus_load: None };
     Ok((recording, Cost { wall_s, physics_step_us: None, lateness_max_ms: None }))
 }
 
-/// Starts the programs, lets the run pass, and stops them. Gives the instant the gateway started,
-/// since 1970: the zero of the run.
-fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<SimTime, Failure> {
-    let mut candump = Program::start("candump", &["-L", bus], Some(File::create(log)?))?;
+/// File name of the emulator's truth.
+const TRUTH: &str = "truth.csv";
+
+/// Wall time of the starts, since 1970.
+struct Start {
+    /// When the emulator was ready.
+    emulator: SimTime,
+    /// When the gateway was started: the zero of the run.
+    run: SimTime,
+}
+
+/// Starts the programs, lets the run pass, and stops them.
+fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<Start, Failure> {
+    let mut candump = Program::start("candump", &["-L", bus], Output::To(File::create(log)?))?;
     thread::sleep(CANDUMP_START);
-    let mut emulator = Program::start_beside("ecu-emu", &emulator_arguments(setup, bus, folder)?)?;
-    let pty = gnss_pty(&mut emulator)?;
-    let policy = policy_argument(setup, folder)?;
-    let arguments = ["--bus", bus, "--policy", &policy, "--gnss", &pty];
-    let start = SystemTime::now().duration_since(UNIX_EPOCH)?;
-    let begun = Instant::now();
-    let mut gateway = Program::start_beside("gateway", &arguments)?;
+    let arguments = emulator_arguments(setup, bus, folder)?;
+    let mut emulator = Program::start_beside("ecu-emu", &arguments, Output::Read)?;
+    let gnss = gnss_path(&mut emulator)?;
+    let emulator_start = since_1970()?;
+    let arguments = gateway_arguments(setup, bus, gnss, folder)?;
+    let (run_start, begun) = (since_1970()?, Instant::now());
+    let mut gateway = Program::start_beside("gateway", &arguments, Output::Nowhere)?;
 
     let mut events = setup.scenario.events.clone();
     events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
@@ -73,11 +86,15 @@ fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<SimTime,
     }
     let end = begun + Duration::from_secs_f64(setup.scenario.duration_s);
     sleep_watching(end, &mut [&mut candump, &mut emulator, &mut gateway])?;
+    // The log ends here, before the programs say goodbye.
+    candump.stop()?;
     gateway.stop()?;
     emulator.stop()?;
-    thread::sleep(LAST_FRAMES);
-    candump.stop()?;
-    Ok(SimTime::ZERO + start)
+    Ok(Start { emulator: emulator_start, run: run_start })
+}
+
+fn since_1970() -> Result<SimTime, Failure> {
+    Ok(SimTime::ZERO + SystemTime::now().duration_since(UNIX_EPOCH)?)
 }
 
 /// Sleeps until `due`; an error if one of the programs ends before.
@@ -98,6 +115,7 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
     let mut arguments = vec!["--bus".to_owned(), bus.to_owned()];
     let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
     add("--seed", setup.seed.to_string());
+    add("--truth", folder.join(TRUTH).display().to_string());
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());
     }
@@ -115,6 +133,27 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
     Ok(arguments)
 }
 
+fn gateway_arguments(
+    setup: &Setup,
+    bus: &str,
+    gnss: String,
+    folder: &Path,
+) -> Result<Vec<String>, Failure> {
+    // Beyond the run's end, so that a gateway whose task is done stays on the bus to the end.
+    let duration_s = setup.scenario.duration_s + BEYOND_S;
+    let policy = policy_argument(setup, folder)?;
+    let mut arguments = Vec::new();
+    let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
+    add("--bus", bus.to_owned());
+    add("--policy", policy);
+    add("--gnss", gnss);
+    add("--duration", duration_s.to_string());
+    if let Some(machine) = setup.machine_file() {
+        add("--machine", machine.display().to_string());
+    }
+    Ok(arguments)
+}
+
 /// The policy as the gateway's command line takes it; a script is written to a file first.
 fn policy_argument(setup: &Setup, folder: &Path) -> Result<String, Failure> {
     let Some(script) = &setup.scenario.script else {
@@ -126,12 +165,12 @@ fn policy_argument(setup: &Setup, folder: &Path) -> Result<String, Failure> {
 }
 
 /// The emulator says where its GNSS receiver is, in the first line of its output.
-fn gnss_pty(emulator: &mut Program) -> Result<String, Failure> {
+fn gnss_path(emulator: &mut Program) -> Result<String, Failure> {
     let line = emulator.first_line()?;
     let said: serde_json::Value = serde_json::from_str(&line)
         .map_err(|error| format!("ecu-emu said `{}`, not a line of JSON: {error}", line.trim()))?;
-    let pty = said["gnss_pty"].as_str();
-    Ok(pty.ok_or_else(|| format!("ecu-emu said `{}`, without gnss_pty", line.trim()))?.to_owned())
+    let path = said["gnss"].as_str();
+    Ok(path.ok_or_else(|| format!("ecu-emu said `{}`, without gnss", line.trim()))?.to_owned())
 }
 
 /// A folder for the run's own files, gone with the run.

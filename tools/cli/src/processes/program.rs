@@ -20,18 +20,27 @@ pub(super) struct Program {
     ended: bool,
 }
 
+/// Where a program's output goes. Its talk goes where ours goes.
+pub(super) enum Output {
+    /// Into a file.
+    To(File),
+    /// To [`Program::first_line`].
+    Read,
+    /// Away.
+    Nowhere,
+}
+
 /// How long a program may take to end once asked to.
 const END: Duration = Duration::from_secs(2);
 /// How often it is asked whether it has.
 const ASK: Duration = Duration::from_millis(10);
 
 impl Program {
-    /// Starts `name` from the search path. Its output goes to `output` or can be read; its talk
-    /// goes where ours goes.
+    /// Starts `name` from the search path.
     pub(super) fn start(
         name: &str,
         arguments: &[impl AsRef<OsStr>],
-        output: Option<File>,
+        output: Output,
     ) -> Result<Self, Failure> {
         Self::spawn(name, Command::new(name), arguments, output).map_err(|error| {
             format!("cannot start {name}: {error}; it is part of can-utils, install that").into()
@@ -42,9 +51,10 @@ impl Program {
     pub(super) fn start_beside(
         name: &str,
         arguments: &[impl AsRef<OsStr>],
+        output: Output,
     ) -> Result<Self, Failure> {
         let path = beside(name)?;
-        Self::spawn(name, Command::new(&path), arguments, None).map_err(|error| {
+        Self::spawn(name, Command::new(&path), arguments, output).map_err(|error| {
             let path = path.display();
             format!("cannot start {path}: {error}; build it with `cargo build --release -p {name}`")
                 .into()
@@ -55,9 +65,13 @@ impl Program {
         name: &str,
         mut command: Command,
         arguments: &[impl AsRef<OsStr>],
-        output: Option<File>,
+        output: Output,
     ) -> std::io::Result<Self> {
-        let output = output.map_or_else(Stdio::piped, Stdio::from);
+        let output = match output {
+            Output::To(file) => Stdio::from(file),
+            Output::Read => Stdio::piped(),
+            Output::Nowhere => Stdio::null(),
+        };
         let child = command.args(arguments).stdin(Stdio::null()).stdout(output).spawn()?;
         Ok(Self { name: name.to_owned(), child, ended: false })
     }

@@ -1,0 +1,84 @@
+//! The Debian packages that the guest is built from and run with.
+
+use std::process::Command;
+
+use crate::workspace::Outcome;
+
+/// One thing to have: how to see that it is there, and which package brings it.
+pub(super) struct Need {
+    /// A file of the package.
+    file: &'static str,
+    package: &'static str,
+}
+
+const fn need(package: &'static str, file: &'static str) -> Need {
+    Need { file, package }
+}
+
+/// What a guest needs to run. Its init is a bash script with `ip`; a shim is compiled for it.
+pub(super) const RUN: &[Need] = &[
+    need("iproute2", "/bin/ip"),
+    need("can-utils", "/usr/bin/candump"),
+    need("gcc", "/usr/bin/cc"),
+    need("libc6-dev", "/usr/include/elf.h"),
+];
+
+/// The archive that the kernel is built from.
+pub(super) const SOURCE: &str = "/usr/src/linux-source-6.1.tar.xz";
+/// The package that brings it.
+pub(super) const SOURCE_PACKAGE: &str = "linux-source-6.1";
+
+/// What the kernel's build needs beyond [`RUN`].
+pub(super) const BUILD: &[Need] = &[
+    need(SOURCE_PACKAGE, SOURCE),
+    need("bc", "/usr/bin/bc"),
+    need("bison", "/usr/bin/bison"),
+    need("flex", "/usr/bin/flex"),
+    need("make", "/usr/bin/make"),
+    need("xz-utils", "/usr/bin/xz"),
+];
+
+/// Has everything of `needs`, by installing what is missing where that is allowed.
+///
+/// # Errors
+/// Names the missing packages and the command that installs them.
+pub(super) fn require(needs: &[Need]) -> Outcome<()> {
+    let absent = |need: &&Need| !std::path::Path::new(need.file).exists();
+    let missing: Vec<&str> = needs.iter().filter(absent).map(|need| need.package).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let list = missing.join(" ");
+    let by_hand = format!("install them: apt-get install --no-install-recommends {list}");
+    if !rustix::process::geteuid().is_root() {
+        return Err(format!("the guest needs Debian packages; {by_hand}").into());
+    }
+    eprintln!("installing {list}");
+    let install = ["install", "--yes", "--quiet=2", "--no-install-recommends"];
+    let installed = apt_get(&["update", "--quiet=2"]) && {
+        let arguments: Vec<&str> = install.iter().chain(&missing).copied().collect();
+        apt_get(&arguments)
+    };
+    let left: Vec<&str> = needs.iter().filter(absent).map(|need| need.package).collect();
+    if !installed || !left.is_empty() {
+        return Err(format!("could not install the guest's packages; {by_hand}").into());
+    }
+    Ok(())
+}
+
+fn apt_get(arguments: &[&str]) -> bool {
+    let mut command = Command::new("apt-get");
+    command.env("DEBIAN_FRONTEND", "noninteractive").args(arguments);
+    // Its progress is talk; stdout is the caller's.
+    command.stdout(std::io::stderr()).status().is_ok_and(|status| status.success())
+}
+
+/// The installed version of a package; `None` where there is none, or no dpkg.
+pub(super) fn version(package: &str) -> Option<String> {
+    let query = Command::new("dpkg-query")
+        .args(["--show", "--showformat=${db:Status-Status} ${Version}", package])
+        .output()
+        .ok()?;
+    let said = String::from_utf8(query.stdout).ok()?;
+    said.strip_prefix("installed ").map(str::to_owned)
+}

@@ -1,0 +1,201 @@
+//! `cargo xtask test`: everything that must hold, as one command with one last line.
+
+pub(crate) mod tally;
+
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+use crate::tidy;
+use crate::vcan::Cache;
+use crate::vcan_scenarios;
+use crate::workspace::{Outcome, Workspace};
+use tally::Tally;
+
+/// Run everything that must hold, and end with one line `N passed, N failed`
+///
+/// All stages run, whatever came of those before: one run shows all that is wrong. A stage that
+/// fails without naming a test counts as one failed.
+#[derive(Args)]
+pub(crate) struct Test {
+    /// Leave out what needs a real vcan0; refused where CI is set
+    #[arg(long)]
+    no_vcan: bool,
+    /// Run this stage alone
+    #[arg(long, value_enum, value_name = "STAGE")]
+    only: Option<Stage>,
+    #[command(flatten)]
+    cache: Cache,
+}
+
+/// The parts of the test, in their order.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Stage {
+    /// cargo fmt --check
+    Fmt,
+    /// The house rules
+    Tidy,
+    /// cargo clippy, warnings refused
+    Clippy,
+    /// cargo doc, warnings refused
+    Doc,
+    /// Unit, property and scenario tests, released code
+    Tests,
+    /// Scenarios as separate programs on a real vcan0
+    Vcan,
+}
+
+impl Stage {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Fmt => "fmt",
+            Self::Tidy => "tidy",
+            Self::Clippy => "clippy",
+            Self::Doc => "doc",
+            Self::Tests => "tests",
+            Self::Vcan => "vcan",
+        }
+    }
+}
+
+impl Test {
+    /// Runs the stages; 0 if nothing failed.
+    ///
+    /// # Errors
+    /// When a stage is left out that must not be.
+    pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
+        if self.no_vcan && std::env::var_os("CI").is_some_and(|ci| ci != "false" && !ci.is_empty())
+        {
+            return Err("--no-vcan is not for CI: what is not run there is not known".into());
+        }
+        let mut sum = Tally::default();
+        let mut lines = Vec::new();
+        for stage in Stage::value_variants() {
+            if self.only.is_some_and(|only| only != *stage) {
+                continue;
+            }
+            let name = stage.name();
+            println!("\n=== {name}");
+            let begun = Instant::now();
+            let tally = self.stage(*stage, workspace);
+            let took = begun.elapsed().as_secs_f64();
+            let verdict = if tally.failed > 0 { "FAILED" } else { "ok" };
+            lines.push(format!("{name:<8} {verdict:<6} {took:>7.1} s   {tally}"));
+            sum += tally;
+        }
+        println!("\n=== summary");
+        for line in lines {
+            println!("{line}");
+        }
+        println!("{sum}");
+        Ok(u8::from(sum.failed > 0))
+    }
+
+    fn stage(&self, stage: Stage, workspace: &Workspace) -> Tally {
+        let cargo = |arguments: &[&str]| {
+            let mut command = Command::new(env!("CARGO"));
+            command.current_dir(&workspace.root).args(arguments);
+            command
+        };
+        match stage {
+            Stage::Fmt => plain(&mut cargo(&["fmt", "--all", "--check"])),
+            Stage::Tidy => tidy_stage(workspace),
+            Stage::Clippy => plain(&mut cargo(&[
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--release",
+                "--locked",
+                "--",
+                "--deny=warnings",
+            ])),
+            Stage::Doc => {
+                let mut doc = cargo(&["doc", "--workspace", "--no-deps", "--release", "--locked"]);
+                plain(doc.env("RUSTDOCFLAGS", "--deny=warnings"))
+            }
+            Stage::Tests => harness(&mut cargo(&[
+                "test",
+                "--workspace",
+                "--release",
+                "--locked",
+                "--no-fail-fast",
+            ])),
+            Stage::Vcan if self.no_vcan => {
+                println!("LEFT OUT by --no-vcan: nothing here was tried on a real vcan0");
+                Tally { skipped: vcan_scenarios::COUNT, ..Tally::default() }
+            }
+            Stage::Vcan => vcan_scenarios::run_all(workspace, &self.cache),
+        }
+    }
+}
+
+/// A stage that names no tests: nothing is counted unless it fails.
+fn plain(command: &mut Command) -> Tally {
+    let failed = !command.status().is_ok_and(|status| status.success());
+    Tally { failed: u32::from(failed), ..Tally::default() }
+}
+
+fn tidy_stage(workspace: &Workspace) -> Tally {
+    let found = match tidy::check(workspace) {
+        Ok(found) => found,
+        Err(error) => {
+            println!("{error}");
+            return Tally::one(false);
+        }
+    };
+    for finding in &found {
+        println!("{finding}");
+    }
+    Tally { failed: u32::from(!found.is_empty()), ..Tally::default() }
+}
+
+/// Runs a command whose tests tell their results, passing its output on as it comes.
+pub(crate) fn harness(command: &mut Command) -> Tally {
+    let mut sum = Tally::default();
+    let mut read_and_wait = || -> Outcome<bool> {
+        let mut child = command.stdout(Stdio::piped()).spawn()?;
+        let output = child.stdout.take().ok_or("no output to read")?;
+        for line in BufReader::new(output).split(b'\n') {
+            let line = line?;
+            let line = String::from_utf8_lossy(&line);
+            println!("{line}");
+            sum += Tally::of_line(&line).unwrap_or_default();
+        }
+        Ok(child.wait()?.success())
+    };
+    let success = read_and_wait().unwrap_or_else(|error| {
+        println!("{command:?}: {error}");
+        false
+    });
+    // It did not compile, or a test brought its whole program down.
+    if !success && sum.failed == 0 {
+        sum.failed = 1;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Tally {
+        harness(Command::new("sh").args(["-c", script]))
+    }
+
+    #[test]
+    fn result_lines_add_up() {
+        let line = "echo 'test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured'";
+        assert_eq!(shell(&format!("{line}; {line}")), Tally { passed: 4, failed: 0, skipped: 2 });
+    }
+
+    #[test]
+    fn a_failure_without_a_result_line_counts() {
+        assert_eq!(shell("exit 101"), Tally::one(false));
+        let line = "echo 'test result: FAILED. 2 passed; 3 failed; 0 ignored'";
+        assert_eq!(shell(&format!("{line}; exit 101")).failed, 3);
+        assert_eq!(plain(&mut Command::new("false")), Tally::one(false));
+        assert_eq!(plain(&mut Command::new("true")), Tally::default());
+    }
+}

@@ -1,0 +1,202 @@
+//! `cargo xtask vcan-scenarios`: emulator, gateway and candump as programs on a real vcan0.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use cargo_metadata::{Artifact, Message};
+use clap::Args;
+
+use crate::test::harness;
+use crate::test::tally::Tally;
+use crate::vcan::Cache;
+use crate::workspace::{Outcome, Workspace};
+
+/// Run the scenarios that use a real vcan0, as separate programs
+///
+/// In virtual time the physical expectations hold exactly as on the virtual bus, and two runs log
+/// the same bytes. In real time a loaded machine may be late, so there the programs have to come
+/// up, find each other and end as told; the expectations are printed, not asserted.
+#[derive(Args)]
+pub(crate) struct VcanScenarios {
+    #[command(flatten)]
+    cache: Cache,
+}
+
+impl VcanScenarios {
+    /// Runs them all and prints the counts; 0 if none failed.
+    ///
+    /// # Errors
+    /// None yet: what goes wrong is a failed check.
+    pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
+        let tally = run_all(workspace, &self.cache);
+        println!("{tally}");
+        Ok(u8::from(tally.failed > 0))
+    }
+}
+
+/// One run of `xt28` on vcan0.
+struct Check {
+    scenario: &'static str,
+    /// Name of its log, below `target/vcan-scenarios`.
+    log: &'static str,
+    virtual_time: bool,
+    /// The log of an earlier check that this one has to repeat byte for byte.
+    repeats: Option<&'static str>,
+}
+
+const CHECKS: &[Check] = &[
+    Check { scenario: "straight-25m", log: "straight-25m.log", virtual_time: true, repeats: None },
+    Check { scenario: "command-loss", log: "command-loss.log", virtual_time: true, repeats: None },
+    Check {
+        scenario: "command-loss",
+        log: "command-loss-again.log",
+        virtual_time: true,
+        repeats: Some("command-loss.log"),
+    },
+    Check {
+        scenario: "command-loss",
+        log: "command-loss-real-time.log",
+        virtual_time: false,
+        repeats: None,
+    },
+];
+
+/// How many checks [`run_all`] has, the socket tests counted as one.
+#[allow(clippy::cast_possible_truncation)] // a handful
+pub(crate) const COUNT: u32 = CHECKS.len() as u32 + 1;
+
+/// Longest wall time of one check, s. In virtual time nothing else would end a run that hangs.
+const TIMEOUT_S: &str = "600";
+
+/// Builds what is needed and runs every check.
+pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Tally {
+    let bench = match Bench::prepare(workspace, cache) {
+        Ok(bench) => bench,
+        Err(error) => {
+            println!("{error}");
+            return Tally { failed: COUNT, ..Tally::default() };
+        }
+    };
+    let mut sum = Tally::default();
+    for check in CHECKS {
+        let failure = bench.check(check).err();
+        let verdict = failure.map_or_else(|| "ok".to_owned(), |why| format!("FAILED: {why}"));
+        sum += Tally::one(verdict == "ok");
+        println!("vcan {} ... {verdict}", check.log.trim_end_matches(".log"));
+    }
+    let mut socket_tests = bench.vcan(&["--"]);
+    socket_tests.arg(&bench.socket_tests).arg("--nocapture").env("XT28_VCAN", "vcan0");
+    sum += harness(&mut socket_tests);
+    sum
+}
+
+/// What the checks run with: programs built outside, since a guest is slow at compiling.
+struct Bench {
+    xt28: PathBuf,
+    socket_tests: PathBuf,
+    cache: PathBuf,
+    logs: PathBuf,
+}
+
+impl Bench {
+    fn prepare(workspace: &Workspace, cache: &Cache) -> Outcome<Self> {
+        let cache = cache.folder(&workspace.target)?;
+        // First, for it may ask for packages: better at once than after the builds.
+        crate::guest::Guest::prepare(&cache)?;
+        let programs = ["--package=xt28", "--package=ecu-emu", "--package=gateway", "--bins"];
+        let built = build(&workspace.root, &[&["build"][..], &programs].concat())?;
+        let tests = ["test", "--no-run", "--package=xt28-bus", "--test=socket_can"];
+        let tested = build(&workspace.root, &tests)?;
+        let logs = workspace.target.join("vcan-scenarios");
+        fs::create_dir_all(&logs)?;
+        Ok(Self {
+            xt28: executable(&built, "xt28")?,
+            socket_tests: executable(&tested, "socket_can")?,
+            cache,
+            logs,
+        })
+    }
+
+    /// This very program as `vcan`, with further arguments.
+    fn vcan(&self, arguments: &[&str]) -> Command {
+        let own = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("xtask"));
+        let mut command = Command::new(own);
+        command.args(["vcan", "--timeout", TIMEOUT_S, "--cache"]).arg(&self.cache).args(arguments);
+        command
+    }
+
+    fn check(&self, check: &Check) -> Outcome<()> {
+        let time = if check.virtual_time { "in virtual time" } else { "in real time" };
+        println!("--- {} on vcan0, {time}", check.scenario);
+        let log = self.logs.join(check.log);
+        let options: &[&str] = if check.virtual_time { &["--virtual-time", "--"] } else { &["--"] };
+        let mut run = self.vcan(options);
+        run.arg(&self.xt28).args(["run", check.scenario, "--bus", "vcan0", "--record"]).arg(&log);
+        let status = run.status()?;
+        // 1 is a verdict: asserted where it cannot depend on what else the machine does.
+        if !status.success() && (check.virtual_time || status.code() != Some(1)) {
+            return Err(format!("xt28 ended with {status}").into());
+        }
+        let logged = fs::read(&log).map_err(|error| format!("{}: {error}", log.display()))?;
+        if logged.is_empty() {
+            return Err("candump logged nothing".into());
+        }
+        let Some(earlier) = check.repeats else { return Ok(()) };
+        same(&fs::read(self.logs.join(earlier))?, &logged)
+    }
+}
+
+/// Whether two logs are the same, and the first line where they part.
+fn same(first: &[u8], second: &[u8]) -> Outcome<()> {
+    if first == second {
+        return Ok(());
+    }
+    let mut lines = (1..).zip(first.split(|b| *b == b'\n').zip(second.split(|b| *b == b'\n')));
+    let parted = lines.find(|(_, (a, b))| a != b).map_or_else(
+        || "one is longer".to_owned(),
+        |(line, (a, b))| {
+            let [a, b] = [a, b].map(|text| String::from_utf8_lossy(text));
+            format!("line {line} is `{a}` and `{b}`")
+        },
+    );
+    Err(format!("a second run logged something else: {parted}").into())
+}
+
+/// Runs cargo and returns what it built.
+fn build(root: &Path, arguments: &[&str]) -> Outcome<Vec<Artifact>> {
+    let mut cargo = Command::new(env!("CARGO"))
+        .current_dir(root)
+        .args(arguments)
+        .args(["--release", "--locked", "--message-format=json-render-diagnostics"])
+        .stdout(Stdio::piped())
+        .spawn()?;
+    let output = cargo.stdout.take().ok_or("no output to read")?;
+    let mut built = Vec::new();
+    for message in Message::parse_stream(std::io::BufReader::new(output)) {
+        if let Message::CompilerArtifact(artifact) = message? {
+            built.push(artifact);
+        }
+    }
+    let status = cargo.wait()?;
+    if status.success() { Ok(built) } else { Err(format!("cargo {arguments:?}: {status}").into()) }
+}
+
+fn executable(built: &[Artifact], name: &str) -> Outcome<PathBuf> {
+    let found = built.iter().filter(|artifact| artifact.target.name == name);
+    let mut paths = found.filter_map(|artifact| artifact.executable.clone());
+    Ok(paths.next().ok_or_else(|| format!("cargo built no {name}"))?.into_std_path_buf())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::same;
+
+    #[test]
+    fn two_logs_part_at_a_line() {
+        assert!(same(b"a\nb\n", b"a\nb\n").is_ok());
+        let parted = same(b"a\nb\n", b"a\nc\n").unwrap_err().to_string();
+        assert!(parted.ends_with("line 2 is `b` and `c`"), "{parted}");
+        assert!(same(b"a\n", b"a\nb\n").is_err());
+    }
+}

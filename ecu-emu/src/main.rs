@@ -1,2 +1,23 @@
-//! Placeholder until the room is filled.
-fn main() {}
+//! `ecu-emu`: the two ECUs and the machine behind them on a CAN interface, in real time.
+#![forbid(unsafe_code)]
+// A binary is the edge: it may read the clock, print and exit.
+#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+
+mod args;
+mod realtime;
+mod serial;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+fn main() -> ExitCode {
+    let args = args::Args::parse();
+    match realtime::run(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => {
+            eprintln!("ecu-emu: {problem}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! The command line of `ecu-emu`.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+
+/// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
+///
+/// Sends every frame that the pendulum-arm ECU (SMS), the transmission ECU (DMS) and the engine
+/// send, takes the remote command frames, and plays the machine's GNSS receiver on a
+/// pseudo-terminal. The first line on stdout is a JSON object that names that terminal; say
+/// `gateway --gnss` its path. Runs until it is stopped (Ctrl-C) or `--duration` is over.
+///
+/// Exit status: 0 stopped as asked, 2 usage or I/O.
+#[derive(Debug, Parser)]
+#[command(name = "ecu-emu", version, about, long_about)]
+pub(crate) struct Args {
+    /// CAN interface: `vcan0`, `can0`
+    #[arg(long, value_name = "INTERFACE")]
+    pub(crate) bus: String,
+
+    /// Machine file (TOML); the nominal Xt28 without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) machine: Option<PathBuf>,
+
+    /// Terrain file (TOML); level ground without it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) terrain: Option<PathBuf>,
+
+    /// Seed of the sensor noise; exact sensors without it
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Stroke of all six cylinders at the start
+    #[arg(long, value_name = "MM", default_value_t = 170.0, value_parser = stroke_mm)]
+    pub(crate) stroke_mm: f64,
+
+    /// Stop after this long
+    #[arg(long, value_name = "S", value_parser = duration_s)]
+    pub(crate) duration: Option<f64>,
+
+    /// Link the receiver's pseudo-terminal to this path
+    #[arg(long, value_name = "PATH")]
+    pub(crate) gnss_link: Option<PathBuf>,
+
+    /// Write what is true of the machine, tick by tick (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) truth: Option<PathBuf>,
+}
+
+fn stroke_mm(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(mm) if (0.0..=500.0).contains(&mm) => Ok(mm),
+        _ => Err("a stroke is 0 to 500 mm".to_owned()),
+    }
+}
+
+fn duration_s(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(s) if s > 0.0 && s.is_finite() => Ok(s),
+        _ => Err("a duration is a number of seconds above zero".to_owned()),
+    }
+}

@@ -1,0 +1,130 @@
+//! The emulator on wall time: ticks of 10 ms on an absolute schedule, lateness measured.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use ecu_emu::{Emulator, EmulatorConfig, TICK, TRUTH_HEADER, write_truth_row};
+use xt28_bus::{Bus, SocketCan};
+use xt28_dbc::Outbox;
+use xt28_machine::{Machine, PerWheel, SimTime};
+use xt28_sim::Terrain;
+
+use crate::args::Args;
+use crate::serial::Serial;
+
+type Problem = Box<dyn std::error::Error>;
+
+/// Runs until a signal or the end of `--duration`.
+pub(crate) fn run(args: &Args) -> Result<(), Problem> {
+    let config = config(args)?;
+    let mut bus = SocketCan::open(&args.bus)?;
+    let serial = Serial::open(args.gnss_link.as_deref())
+        .map_err(|error| format!("cannot open a pseudo-terminal for the receiver: {error}"))?;
+    let mut truth = args.truth.as_deref().map(open_truth).transpose()?;
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&stop))?;
+    }
+    let mut emulator = Emulator::new(&config);
+    // The reader of this line knows that the machine has settled and listens.
+    println!("{{\"bus\":\"{}\",\"gnss\":\"{}\"}}", args.bus, serial.path().display());
+    std::io::stdout().flush()?;
+
+    let start = Instant::now();
+    let last = args.duration.map(Duration::from_secs_f64);
+    let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
+    let mut lateness = Lateness::default();
+    while !stop.load(Ordering::Relaxed) && last.is_none_or(|last| now.since(SimTime::ZERO) < last) {
+        let due = start + now.since(SimTime::ZERO);
+        listen_until(&mut bus, &mut emulator, due, start)?;
+        lateness.add(due.elapsed());
+        out.clear();
+        if let Some((file, path)) = &mut truth {
+            write_truth_row(file, now, emulator.truth())
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+        }
+        emulator.tick(now, &mut out);
+        for frame in out.frames() {
+            bus.send(now, frame)?;
+        }
+        bytes.clear();
+        emulator.take_gnss(&mut bytes);
+        if !bytes.is_empty() {
+            serial.send(&bytes)?;
+        }
+        now += TICK;
+    }
+    if let Some((file, path)) = &mut truth {
+        file.flush().map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    eprintln!("ecu-emu: {lateness}");
+    Ok(())
+}
+
+fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
+    let machine = match &args.machine {
+        Some(path) => Machine::load(path)?,
+        None => Machine::xt28(),
+    };
+    let terrain = match &args.terrain {
+        Some(path) => Terrain::load(path)?,
+        None => Terrain::Flat,
+    };
+    let mut config = EmulatorConfig::new(machine, terrain, args.seed);
+    config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
+    Ok(config)
+}
+
+fn open_truth(path: &Path) -> Result<(BufWriter<File>, PathBuf), Problem> {
+    let refuse = |error| format!("{}: cannot write: {error}", path.display());
+    let mut file = BufWriter::new(File::create(path).map_err(refuse)?);
+    writeln!(file, "{TRUTH_HEADER}").map_err(refuse)?;
+    Ok((file, path.to_owned()))
+}
+
+/// Takes frames off the bus until `due`; sleeps in between.
+fn listen_until(
+    bus: &mut SocketCan,
+    emulator: &mut Emulator,
+    due: Instant,
+    start: Instant,
+) -> Result<(), Problem> {
+    loop {
+        while let Some(received) = bus.receive()? {
+            let since = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
+            emulator.on_frame(SimTime::from_nanos(since), &received.frame);
+        }
+        let left = due.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Ok(());
+        }
+        bus.wait(left)?;
+    }
+}
+
+/// How late ticks began.
+#[derive(Debug, Default)]
+struct Lateness {
+    ticks: u32,
+    total: Duration,
+    worst: Duration,
+}
+
+impl Lateness {
+    fn add(&mut self, late: Duration) {
+        self.ticks += 1;
+        self.total += late;
+        self.worst = self.worst.max(late);
+    }
+}
+
+impl std::fmt::Display for Lateness {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mean = self.total.checked_div(self.ticks).unwrap_or_default();
+        write!(f, "{} ticks, late {mean:.0?} on average, {:.0?} at worst", self.ticks, self.worst)
+    }
+}

@@ -1,0 +1,58 @@
+//! The harness: plant sensors to ECU pins, ECU outputs to plant actuators. No laws, only wires.
+
+use xt28_dbc::Frame;
+use xt28_ecus::{ArmOutputs, ArmPins, DriveOutputs, DrivePins, pins};
+use xt28_machine::{PerWheel, Wheel};
+use xt28_sim::{Actuation, ImuSample, VehicleState};
+
+/// Battery of the machine, mV.
+const SUPPLY_MV: f64 = 24_000.0;
+
+/// What the pendulum-arm ECU's sensors put on its pins.
+pub(crate) fn arm_pins(s: &VehicleState) -> ArmPins {
+    ArmPins {
+        stroke_mv: s.stroke_m.map(pins::stroke_mv),
+        pressure_a_mv: s.pressure_a_pa.map(pins::pressure_mv),
+        pressure_b_mv: s.pressure_b_pa.map(pins::pressure_mv),
+        supply_mv: SUPPLY_MV,
+    }
+}
+
+/// What the transmission ECU's sensors put on its pins.
+pub(crate) fn drive_pins(s: &VehicleState) -> DrivePins {
+    DrivePins {
+        joint_front_mv: pins::joint_front_mv(s.joint_rad[0]),
+        joint_rear_mv: pins::joint_rear_mv(s.joint_rad[1]),
+        wheel_hz: s.wheel_speed_rad_s.map(pins::wheel_hz),
+        wheel_forward: s.wheel_speed_rad_s.map(|rad_s| rad_s >= 0.0),
+        pump_mv: s.pump_pressure_pa.map(pins::pump_mv),
+        supply_mv: SUPPLY_MV,
+    }
+}
+
+/// What the inertial unit sends on its own wire.
+pub(crate) fn imu_frames(sample: &ImuSample) -> [Frame; 2] {
+    pins::imu_frames(sample.rate_rad_s, sample.specific_force_m_s2)
+}
+
+/// What valves, pumps, motors and brake do at the ECUs' currents.
+pub(crate) fn actuation(arm: &ArmOutputs, drive: &DriveOutputs, engine_rpm: f64) -> Actuation {
+    let (a, b) = (&arm.solenoid_a_ma, &arm.solenoid_b_ma);
+    let pump = |i: usize| pins::pump_displacement(drive.pump_ma[2 * i], drive.pump_ma[2 * i + 1]);
+    Actuation {
+        arm_opening: PerWheel::from_fn(|w: Wheel| pins::valve_opening(a[w], b[w])),
+        steer_opening: [
+            pins::steer_opening(drive.steer_front_a_ma, drive.steer_front_b_ma),
+            pins::steer_opening(drive.steer_rear_a_ma, drive.steer_rear_b_ma),
+        ],
+        pump_displacement: [pump(0), pump(1)],
+        motor_displacement: drive.motor_ma.map(pins::motor_displacement),
+        engine_speed_rpm: engine_rpm,
+        brake_released: drive.brake_released,
+    }
+}
+
+/// A machine at rest before its ECUs have run.
+pub(crate) const fn standing(engine_rpm: f64) -> Actuation {
+    Actuation::idle(engine_rpm)
+}

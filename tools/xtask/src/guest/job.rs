@@ -17,10 +17,12 @@ use crate::workspace::Outcome;
 
 const INIT: &str = include_str!("../../guest/init.sh");
 
-/// Starts the kernel (`$1`, its arguments behind) with the guest's stderr on descriptor 3, what
-/// the kernel itself says in `kernel.log`, and the whole bound to the life of this process.
-const LAUNCH: &str =
-    r#"exec 3>&2 2>kernel.log; LD_PRELOAD="$SHIM" exec setpriv --pdeathsig KILL "$@""#;
+/// Starts the kernel (`$1`, its arguments behind) with the guest's stderr on descriptor 3 and what
+/// the kernel itself says in `kernel.log`. Beside it waits a watch on our end of its stdin: it
+/// reads nothing, sees the end when this process is gone for whatever reason, and then ends all.
+const LAUNCH: &str = r#"exec 3>&2 2>kernel.log 4<&0
+{ read -r _ <&4; kill -KILL 0; } >/dev/null 2>&1 3>&- &
+LD_PRELOAD="$SHIM" exec "$@" 4<&- </dev/null"#;
 
 /// What the clock of a guest with virtual time says when it starts: 2026-01-01 00:00 UTC, ns.
 const EPOCH_NS: u64 = 1_767_225_600_000_000_000;
@@ -106,7 +108,7 @@ impl Guest {
             command.arg(format!("time-travel-start={EPOCH_NS}"));
         }
         command.current_dir(at).env("SHIM", &self.shim);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         // Of its own, so that all of the guest's host processes can be ended with one signal.
         command.process_group(0);
         command

@@ -27,14 +27,14 @@ pub(crate) fn check_lock(path: &str, text: &str) -> Vec<Finding> {
 /// Every private host, mirror setting and absolute home folder in a text.
 pub(crate) fn check_text(path: &str, text: &str) -> Vec<Finding> {
     let mut found = Vec::new();
+    // This file lists what it looks for.
+    if path.ends_with("tidy/outside.rs") {
+        return found;
+    }
     for (line, number) in text.lines().zip(1..) {
         let at = format!("{path}:{number}");
         for host in hosts(line).filter(|host| private(host)) {
             found.push(Finding::new(&at, format!("`{host}` is not a public host")));
-        }
-        // This file lists the words it looks for.
-        if path.ends_with("tidy/outside.rs") {
-            continue;
         }
         for home in HOMES.iter().filter(|home| absolute_below(line, home)) {
             found.push(Finding::new(&at, format!("an absolute path below `{home}`")));

@@ -1,1 +1,23 @@
 //! The two ECUs, sans-IO: frames and electrical signals in and out, time as an argument.
+//!
+//! [`ArmEcu`] ("SMS") controls the pendulum arms, [`DriveEcu`] ("DMS") transmission and steering.
+//! Both know millivolts, hertz, milliamperes and frames only; [`pins`] has the sensors' and
+//! solenoids' laws for those who wire them to something. The numbers come from the machine file,
+//! the laws from the paper and the public firmware.
+#![forbid(unsafe_code)]
+
+mod arm;
+mod command_stream;
+mod drive;
+mod input_check;
+mod life;
+pub mod pins;
+mod port;
+mod refusal;
+mod send;
+
+pub use arm::{ArmEcu, ArmOutputs, ArmPins};
+pub use drive::{DriveEcu, DriveOutputs, DrivePins};
+pub use life::State;
+pub use port::Port;
+pub use refusal::Refusal;

@@ -1,0 +1,193 @@
+//! The pendulum-arm ECU ("SMS"): commands and sensors in, solenoid currents and frames out.
+
+mod attitude;
+mod command;
+mod frames;
+mod position_control;
+mod sensing;
+
+use xt28_dbc::e2e::AliveCounter;
+use xt28_dbc::messages::{ArmTarget, ArmValve};
+use xt28_dbc::{Frame, Outbox};
+use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
+
+use self::attitude::AttitudeFilter;
+use self::command::{ArmCommands, ArmDemand};
+use self::position_control::{PositionControl, PositionGains};
+use self::sensing::{ArmReadings, ArmSensing};
+use crate::input_check::{InputCheck, Supply, worst};
+use crate::life::{Commanded, Health, State};
+use crate::{Port, Refusal, pins};
+
+/// Fault bits of the status frame.
+mod fault {
+    pub(super) const POSITION: u16 = 1 << 0;
+    pub(super) const PRESSURE: u16 = 1 << 1;
+    pub(super) const ATTITUDE: u16 = 1 << 2;
+    pub(super) const SUPPLY: u16 = 1 << 3;
+}
+
+/// What the arm ECU's input pins carry, mV.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArmPins {
+    /// Position sensors of the cylinders.
+    pub stroke_mv: PerWheel<f64>,
+    /// Pressure sensors of the bore chambers (A).
+    pub pressure_a_mv: PerWheel<f64>,
+    /// Pressure sensors of the rod chambers (B).
+    pub pressure_b_mv: PerWheel<f64>,
+    /// Supply.
+    pub supply_mv: f64,
+}
+
+/// What the arm ECU puts out in a tick.
+#[derive(Clone, Debug, Default)]
+pub struct ArmOutputs {
+    /// Current of the solenoids that retract (A), mA.
+    pub solenoid_a_ma: PerWheel<f64>,
+    /// Current of the solenoids that extend (B), mA.
+    pub solenoid_b_ma: PerWheel<f64>,
+    /// Frames for the bus with the gateway.
+    pub can1: Outbox,
+    /// Frames for the inertial unit's bus.
+    pub can2: Outbox,
+}
+
+/// The pendulum-arm ECU, profile of the paper: modes off, manual position and manual valve.
+///
+/// Mode automatic is refused: its law comes with the cascade it needs. There are no soft limits at
+/// the stroke ends as the public firmware has them at 20 and 460 mm (facts 3.6): the paper's
+/// strokes begin at 0.
+#[derive(Clone, Debug)]
+pub struct ArmEcu {
+    commands: ArmCommands,
+    state: State,
+    refusal: Refusal,
+    gains: PositionGains,
+    control: PerWheel<PositionControl>,
+    sensing: ArmSensing,
+    attitude: AttitudeFilter,
+    stroke_checks: PerWheel<InputCheck>,
+    pressure_checks: [PerWheel<InputCheck>; 2],
+    counter: AliveCounter,
+}
+
+impl ArmEcu {
+    /// An ECU just switched on.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        Self {
+            commands: ArmCommands::new(machine.arms.stroke_max_m),
+            state: State::Init,
+            refusal: Refusal::None,
+            gains: PositionGains::new(&machine.hydraulics),
+            control: PerWheel::splat(PositionControl::default()),
+            sensing: ArmSensing::new(machine),
+            attitude: AttitudeFilter::default(),
+            stroke_checks: PerWheel::splat(InputCheck::default()),
+            pressure_checks: [PerWheel::splat(InputCheck::default()); 2],
+            counter: AliveCounter::default(),
+        }
+    }
+
+    /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
+    pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        let taken = match (port, frame.id()) {
+            (Port::Can1, ArmTarget::ID) => self.commands.on_target(now, frame),
+            (Port::Can1, ArmValve::ID) => self.commands.on_valve(now, frame),
+            (Port::Can2, _) => {
+                if let Some(reading) = pins::read_imu(frame) {
+                    self.attitude.on_reading(now, reading);
+                }
+                return;
+            }
+            _ => return,
+        };
+        if let Err(refusal) = taken {
+            self.refusal = refusal;
+        }
+    }
+
+    /// One task period of 10 ms. `out` is cleared and filled.
+    pub fn tick(&mut self, now: SimTime, pins: &ArmPins, out: &mut ArmOutputs) {
+        let readings = self.sensing.step(pins);
+        self.attitude.step();
+        let (health, faults) = self.diagnose(now, pins);
+        let demand = self.commands.fresh(now);
+        let commanded =
+            demand.map(|d| Commanded { request: d.request(), frames: self.commands.frames() });
+        let before = self.state;
+        self.state = before.next(health, commanded);
+        if let Some(refusal) = self.state.refusal(before, commanded) {
+            self.refusal = refusal;
+        }
+
+        let demand = demand.filter(|_| self.state == State::Active).unwrap_or(ArmDemand::Off);
+        let opening = self.openings(&demand, &readings);
+        let current_ma = opening.map(pins::valve_ma);
+        out.solenoid_a_ma = current_ma.map(|[a, _]| a);
+        out.solenoid_b_ma = current_ma.map(|[_, b]| b);
+
+        out.can1.clear();
+        out.can2.clear();
+        frames::pressures(&readings, &mut out.can1);
+        frames::motion(&readings, &mut out.can1);
+        frames::forces(&readings, &mut out.can1);
+        frames::attitude(&readings, &self.attitude, &mut out.can1);
+        frames::currents(&current_ma, &mut out.can1);
+        let status = frames::Status {
+            demand: &demand,
+            state: self.state,
+            faults,
+            accepted: self.commands.accepted(),
+            refusal: self.refusal,
+            supply: Supply::read(pins.supply_mv),
+            counter: self.counter.next_count(),
+        };
+        frames::status(&status, &mut out.can1);
+    }
+
+    /// Where the ECU is in its life.
+    #[must_use]
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// Valve openings, + extends.
+    fn openings(&mut self, demand: &ArmDemand, readings: &ArmReadings) -> PerWheel<f64> {
+        let ArmDemand::Position(target_mm) = demand else {
+            self.control = PerWheel::splat(PositionControl::default());
+            return match demand {
+                ArmDemand::Valve(opening) => opening.map(|o| self.gains.bounded(o)),
+                _ => PerWheel::splat(0.0),
+            };
+        };
+        PerWheel::from_fn(|wheel: Wheel| {
+            let control = &mut self.control[wheel];
+            if let Some(target_mm) = target_mm[wheel] {
+                control.step(&self.gains, target_mm, readings.stroke_mm[wheel])
+            } else {
+                control.reset();
+                0.0
+            }
+        })
+    }
+
+    /// Only the position sensors can stop the arms: no other input is in the loop (facts 3.9).
+    fn diagnose(&mut self, now: SimTime, pins: &ArmPins) -> (Health, u16) {
+        let position = worst(&mut self.stroke_checks.0, now, &pins.stroke_mv.0);
+        let [a, b] = &mut self.pressure_checks;
+        let pressures = [
+            worst(&mut a.0, now, &pins.pressure_a_mv.0),
+            worst(&mut b.0, now, &pins.pressure_b_mv.0),
+        ];
+        let faults = [
+            (position == Health::Broken, fault::POSITION),
+            (pressures.contains(&Health::Broken), fault::PRESSURE),
+            (self.attitude.is_lost(now), fault::ATTITUDE),
+            (Supply::read(pins.supply_mv).is_bad(), fault::SUPPLY),
+        ];
+        let bits = faults.into_iter().filter(|(is, _)| *is).fold(0, |all, (_, bit)| all | bit);
+        (position, bits)
+    }
+}

@@ -1,0 +1,248 @@
+//! The transmission and steering ECU ("DMS"): commands and sensors in, currents and frames out.
+
+mod brake;
+mod engine;
+mod frames;
+mod sensing;
+mod sequence;
+mod steering;
+
+use xt28_dbc::e2e::AliveCounter;
+use xt28_dbc::messages::DriveTarget;
+use xt28_dbc::{Frame, Outbox};
+use xt28_machine::{Machine, PerWheel, SimTime};
+
+use self::brake::ParkingBrake;
+use self::engine::EngineLink;
+use self::sensing::DriveReadings;
+use self::sequence::{ThrottleLag, displacements};
+use self::steering::Steering;
+use crate::command_stream::CommandStream;
+use crate::input_check::{InputCheck, Supply, worst};
+use crate::life::{Commanded, Health, Request, State};
+use crate::{Port, Refusal, pins};
+
+/// Fault bits of the status frame.
+mod fault {
+    pub(super) const JOINT: u16 = 1 << 0;
+    pub(super) const WHEEL_SPEED: u16 = 1 << 1;
+    pub(super) const PUMP_PRESSURE: u16 = 1 << 2;
+    pub(super) const SUPPLY: u16 = 1 << 3;
+    pub(super) const ENGINE: u16 = 1 << 4;
+}
+
+/// What the drive ECU's input pins carry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivePins {
+    /// Sensor of the front joint, mV.
+    pub joint_front_mv: f64,
+    /// Sensor of the rear joint, mV.
+    pub joint_rear_mv: f64,
+    /// Speed sensors of the wheel motors, Hz.
+    pub wheel_hz: PerWheel<f64>,
+    /// Their directions.
+    pub wheel_forward: PerWheel<bool>,
+    /// Pressure sensors of pumps 1A 1B 2A 2B, mV.
+    pub pump_mv: [f64; 4],
+    /// Supply, mV.
+    pub supply_mv: f64,
+}
+
+/// What the drive ECU puts out in a tick.
+#[derive(Clone, Debug, Default)]
+pub struct DriveOutputs {
+    /// Front steering valve, left, mA.
+    pub steer_front_a_ma: f64,
+    /// Front steering valve, right, mA.
+    pub steer_front_b_ma: f64,
+    /// Rear steering valve, left, mA.
+    pub steer_rear_a_ma: f64,
+    /// Rear steering valve, right, mA.
+    pub steer_rear_b_ma: f64,
+    /// Pumps 1A 1B 2A 2B (A reverse, B forward), mA.
+    pub pump_ma: [f64; 4],
+    /// Wheel motors, mA; none is full displacement.
+    pub motor_ma: PerWheel<f64>,
+    /// The spring-applied parking brake is released.
+    pub brake_released: bool,
+    /// Frames for the bus with the gateway.
+    pub can1: Outbox,
+    /// Frames for the engine.
+    pub can3: Outbox,
+}
+
+/// What a drive command asks for.
+#[derive(Clone, Copy, Debug)]
+struct DriveDemand {
+    /// -1 (reverse) to 1.
+    throttle: f64,
+    /// Left > 0.
+    front_deg: f64,
+    brake: bool,
+    enable: bool,
+}
+
+/// The transmission and steering ECU, profile of the paper.
+///
+/// A lost command takes the throttle to zero at once, holds the joints, and applies the parking
+/// brake when the machine stands, or after 5 s.
+#[derive(Clone, Debug)]
+pub struct DriveEcu {
+    commands: CommandStream<DriveDemand>,
+    state: State,
+    refusal: Refusal,
+    throttle: ThrottleLag,
+    steering: Steering,
+    brake: ParkingBrake,
+    engine: EngineLink,
+    wheel_radius_m: f64,
+    joint_checks: [InputCheck; 2],
+    pump_checks: [InputCheck; 4],
+    status_counter: AliveCounter,
+    wheel_counter: AliveCounter,
+}
+
+impl DriveEcu {
+    /// An ECU just switched on.
+    #[must_use]
+    pub fn new(machine: &Machine) -> Self {
+        Self {
+            commands: CommandStream::default(),
+            state: State::Init,
+            refusal: Refusal::None,
+            throttle: ThrottleLag::new(&machine.drive),
+            steering: Steering::new(&machine.articulation),
+            brake: ParkingBrake::default(),
+            engine: EngineLink::new(machine.drive.engine_speed_rpm),
+            wheel_radius_m: machine.wheels.radius_m,
+            joint_checks: [InputCheck::default(); 2],
+            pump_checks: [InputCheck::default(); 4],
+            status_counter: AliveCounter::default(),
+            wheel_counter: AliveCounter::default(),
+        }
+    }
+
+    /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
+    pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        match (port, frame.id()) {
+            (Port::Can1, DriveTarget::ID) => {
+                if let Err(refusal) = self.on_target(now, frame) {
+                    self.refusal = refusal;
+                }
+            }
+            (Port::Can3, _) => self.engine.on_frame(now, frame),
+            _ => {}
+        }
+    }
+
+    /// One task period of 10 ms. `out` is cleared and filled.
+    pub fn tick(&mut self, now: SimTime, pins: &DrivePins, out: &mut DriveOutputs) {
+        let readings = sensing::read(pins, self.wheel_radius_m);
+        let (health, faults) = self.diagnose(now, pins);
+        let demand = self.commands.fresh(now);
+        let commanded = demand.map(|d| Commanded {
+            request: if d.enable { Request::Move } else { Request::Rest },
+            frames: self.commands.frames(),
+        });
+        let before = self.state;
+        self.state = before.next(health, commanded);
+        if let Some(refusal) = self.state.refusal(before, commanded) {
+            self.refusal = refusal;
+        }
+
+        let braked = self.brake.step(now, self.state, demand.map(|d| d.brake), readings.speed_m_s);
+        out.brake_released = !braked;
+        let active = demand.filter(|_| self.state == State::Active);
+        let pump = self.drive(active.filter(|_| !braked), braked, out);
+        self.steer(active, &readings, out);
+
+        out.can1.clear();
+        out.can3.clear();
+        out.can3.push(self.engine.request_frame());
+        let mut can1 = core::mem::take(&mut out.can1);
+        frames::sensors(&readings, self.wheel_counter.next_count(), &mut can1);
+        frames::currents(out, &mut can1);
+        frames::machine(&readings, braked, pump, self.engine.speed_rpm(), &mut can1);
+        let status = frames::Status {
+            state: self.state,
+            faults,
+            accepted: self.commands.accepted(),
+            refusal: self.refusal,
+            brake: braked,
+            speed_m_s: readings.speed_m_s,
+            counter: self.status_counter.next_count(),
+        };
+        frames::status(&status, &mut can1);
+        out.can1 = can1;
+    }
+
+    /// Where the ECU is in its life.
+    #[must_use]
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    fn on_target(&mut self, now: SimTime, frame: &Frame) -> Result<(), Refusal> {
+        let target = DriveTarget::decode(frame)?;
+        let demand = DriveDemand {
+            throttle: target.throttle_percent * 1e-2,
+            front_deg: target.front_angle_deg,
+            brake: target.brake,
+            enable: target.enable,
+        };
+        // A throttle without enable is a sender that contradicts itself.
+        let content = if !target.enable && target.throttle_percent != 0.0 {
+            Err(Refusal::NotEnabled)
+        } else {
+            Ok(demand)
+        };
+        self.commands.offer(now, target.counter, content)?;
+        self.engine.request(target.engine_speed_rpm);
+        Ok(())
+    }
+
+    /// Displacements for the demand; returns that of the pumps. A braked machine is not driven.
+    fn drive(&mut self, demand: Option<DriveDemand>, braked: bool, out: &mut DriveOutputs) -> f64 {
+        if braked {
+            self.throttle.reset();
+        }
+        let demand = self.throttle.step(demand.map_or(0.0, |d| d.throttle));
+        let displacement = displacements(demand);
+        let [a_ma, b_ma] = pins::pump_ma(displacement.pump);
+        out.pump_ma = [a_ma, b_ma, a_ma, b_ma];
+        out.motor_ma = PerWheel::splat(pins::motor_ma(displacement.motor));
+        pins::pump_displacement(a_ma, b_ma)
+    }
+
+    fn steer(
+        &mut self,
+        demand: Option<DriveDemand>,
+        readings: &DriveReadings,
+        out: &mut DriveOutputs,
+    ) {
+        let [front, rear] = match demand {
+            Some(demand) => {
+                self.steering.step(demand.front_deg, readings.joint_deg, readings.speed_m_s)
+            }
+            None => self.steering.hold(),
+        };
+        [out.steer_front_a_ma, out.steer_front_b_ma] = pins::steer_ma(front);
+        [out.steer_rear_a_ma, out.steer_rear_b_ma] = pins::steer_ma(rear);
+    }
+
+    /// Only the joint sensors can stop the machine: they close the steering loop.
+    fn diagnose(&mut self, now: SimTime, pins: &DrivePins) -> (Health, u16) {
+        let joints = worst(&mut self.joint_checks, now, &[pins.joint_front_mv, pins.joint_rear_mv]);
+        let pumps = worst(&mut self.pump_checks, now, &pins.pump_mv);
+        let wheels_bad = pins.wheel_hz.0.iter().any(|hz| !(hz.is_finite() && *hz >= 0.0));
+        let faults = [
+            (joints == Health::Broken, fault::JOINT),
+            (wheels_bad, fault::WHEEL_SPEED),
+            (pumps == Health::Broken, fault::PUMP_PRESSURE),
+            (Supply::read(pins.supply_mv).is_bad(), fault::SUPPLY),
+            (self.engine.is_lost(now), fault::ENGINE),
+        ];
+        let bits = faults.into_iter().filter(|(is, _)| *is).fold(0, |all, (_, bit)| all | bit);
+        (joints, bits)
+    }
+}

@@ -1,0 +1,82 @@
+//! The engine: its speed frame in, the speed request out (facts 2.8).
+
+use core::time::Duration;
+
+use xt28_dbc::messages::Eec1;
+use xt28_dbc::{CanId, Frame};
+use xt28_machine::SimTime;
+
+/// Identifier of the request: proprietary, though shaped like J1939 TSC1.
+const REQUEST_ID: CanId = CanId::Extended(0x0000_0001);
+/// Speeds that may be requested, rpm (facts 4.9).
+const REQUEST_RPM: [f64; 2] = [800.0, 1800.0];
+/// rpm per bit of the request.
+const RPM_PER_BIT: f64 = 0.125;
+/// Without a speed frame for this long the engine is lost: its period is 20 ms (assumed).
+const LOST_AFTER: Duration = Duration::from_millis(200);
+
+/// What the drive ECU knows of the engine.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct EngineLink {
+    requested_rpm: f64,
+    speed_rpm: f64,
+    heard_at: Option<SimTime>,
+}
+
+impl EngineLink {
+    pub(crate) const fn new(working_rpm: f64) -> Self {
+        Self { requested_rpm: working_rpm, speed_rpm: 0.0, heard_at: None }
+    }
+
+    /// A frame from the engine; others than its speed are left alone.
+    pub(crate) fn on_frame(&mut self, now: SimTime, frame: &Frame) {
+        if frame.id() != Eec1::ID {
+            return;
+        }
+        if let Ok(eec1) = Eec1::decode(frame) {
+            self.speed_rpm = eec1.engine_speed_rpm;
+            self.heard_at = Some(now);
+        }
+    }
+
+    /// Takes the speed that a command asks for; it stays when the command is lost.
+    pub(crate) const fn request(&mut self, rpm: f64) {
+        self.requested_rpm = rpm;
+    }
+
+    /// The request: 1 for speed control, then the speed.
+    pub(crate) fn request_frame(&self) -> Frame {
+        let [low, high] = REQUEST_RPM;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 14400 at most
+        let raw = (self.requested_rpm.max(low).min(high) / RPM_PER_BIT).round() as u16;
+        let [lsb, msb] = raw.to_le_bytes();
+        Frame::new(REQUEST_ID, &[1, lsb, msb, 0, 255, 0, 255, 255]).expect("eight bytes")
+    }
+
+    /// Engine speed, rpm; 0 before the first frame.
+    pub(crate) const fn speed_rpm(&self) -> f64 {
+        self.speed_rpm
+    }
+
+    /// True before the first frame, and when none came for too long.
+    pub(crate) fn is_lost(&self, now: SimTime) -> bool {
+        self.heard_at.is_none_or(|at| now.since(at) > LOST_AFTER)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_are_bounded_and_in_eighths_of_rpm() {
+        let mut engine = EngineLink::new(1200.0);
+        // 1200 rpm are 9600 = 0x2580.
+        assert_eq!(engine.request_frame().data(), [1, 0x80, 0x25, 0, 255, 0, 255, 255]);
+        for (asked, raw) in [(0.0, 6400), (2550.0, 14_400), (f64::NAN, 6400)] {
+            engine.request(asked);
+            let frame = engine.request_frame();
+            assert_eq!(u16::from_le_bytes([frame.data()[1], frame.data()[2]]), raw);
+        }
+    }
+}

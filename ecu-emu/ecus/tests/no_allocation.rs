@@ -1,0 +1,71 @@
+//! A tick allocates nothing once the outboxes have grown.
+
+use std::alloc::System;
+use std::time::Duration;
+
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use xt28_dbc::messages::{ArmTarget, ArmTargetMode, DriveTarget};
+use xt28_ecus::{ArmEcu, ArmOutputs, ArmPins, DriveEcu, DriveOutputs, DrivePins, Port, pins};
+use xt28_machine::{Machine, PerWheel, SimTime};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+#[test]
+fn a_second_of_driving_allocates_nothing() {
+    let machine = Machine::xt28();
+    let (mut arm, mut drive) = (ArmEcu::new(&machine), DriveEcu::new(&machine));
+    let (mut arm_out, mut drive_out) = (ArmOutputs::default(), DriveOutputs::default());
+    let arm_pins = ArmPins {
+        stroke_mv: PerWheel::splat(pins::stroke_mv(0.1)),
+        pressure_a_mv: PerWheel::splat(pins::pressure_mv(5e6)),
+        pressure_b_mv: PerWheel::splat(pins::pressure_mv(5e5)),
+        supply_mv: 24_000.0,
+    };
+    let drive_pins = DrivePins {
+        joint_front_mv: pins::joint_front_mv(0.1),
+        joint_rear_mv: pins::joint_rear_mv(0.05),
+        wheel_hz: PerWheel::splat(pins::wheel_hz(1.0)),
+        wheel_forward: PerWheel::splat(true),
+        pump_mv: [pins::pump_mv(25e5); 4],
+        supply_mv: 24_000.0,
+    };
+    let mm = 200.0;
+    let mut run = |ticks: core::ops::Range<u64>| {
+        for tick in ticks {
+            let now = SimTime::ZERO + Duration::from_millis(10) * tick as u32;
+            let counter = (tick % 16) as u8;
+            let mode = ArmTargetMode::ManualPosition;
+            let target = ArmTarget {
+                fr_mm: mm,
+                fl_mm: mm,
+                mr_mm: mm,
+                ml_mm: mm,
+                br_mm: mm,
+                bl_mm: mm,
+                mode,
+                counter,
+            };
+            arm.on_frame(now, Port::Can1, &target.encode().unwrap());
+            for frame in pins::imu_frames([0.1, 0.0, 0.0], [0.0, 0.0, 9.81]) {
+                arm.on_frame(now, Port::Can2, &frame);
+            }
+            let command = DriveTarget {
+                throttle_percent: 60.0,
+                front_angle_deg: 10.0,
+                engine_speed_rpm: 1200.0,
+                brake: false,
+                enable: true,
+                counter,
+            };
+            drive.on_frame(now, Port::Can1, &command.encode().unwrap());
+            arm.tick(now, &arm_pins, &mut arm_out);
+            drive.tick(now, &drive_pins, &mut drive_out);
+        }
+    };
+    run(0..100);
+    let region = Region::new(ALLOCATOR);
+    run(100..200);
+    assert_eq!(region.change().allocations + region.change().reallocations, 0);
+    assert!(arm_out.can1.frames().len() > 20 && drive_out.can1.frames().len() > 5);
+}

@@ -5,6 +5,7 @@ mod command;
 mod frames;
 mod position_control;
 mod sensing;
+mod stroke_limit;
 
 use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{ArmTarget, ArmValve};
@@ -15,6 +16,7 @@ use self::attitude::AttitudeFilter;
 use self::command::{ArmCommands, ArmDemand};
 use self::position_control::{PositionControl, PositionGains};
 use self::sensing::{ArmReadings, ArmSensing};
+use self::stroke_limit::StrokeLimit;
 use crate::input_check::{InputCheck, Supply, worst};
 use crate::life::{Commanded, Health, State};
 use crate::{Port, Refusal, pins};
@@ -55,15 +57,15 @@ pub struct ArmOutputs {
 
 /// The pendulum-arm ECU, profile of the paper: modes off, manual position and manual valve.
 ///
-/// Mode automatic is refused: its law comes with the cascade it needs. There are no soft limits at
-/// the stroke ends as the public firmware has them at 20 and 460 mm (facts 3.6): the paper's
-/// strokes begin at 0.
+/// Mode automatic is refused: its law comes with the cascade it needs. The soft limits are the ends
+/// of the paper's stroke range, not the 20 and 460 mm of the public firmware (facts 3.6).
 #[derive(Clone, Debug)]
 pub struct ArmEcu {
     commands: ArmCommands,
     state: State,
     refusal: Refusal,
     gains: PositionGains,
+    limit: StrokeLimit,
     control: PerWheel<PositionControl>,
     sensing: ArmSensing,
     attitude: AttitudeFilter,
@@ -81,6 +83,7 @@ impl ArmEcu {
             state: State::Init,
             refusal: Refusal::None,
             gains: PositionGains::new(&machine.hydraulics),
+            limit: StrokeLimit::up_to(machine.arms.stroke_max_m),
             control: PerWheel::splat(PositionControl::default()),
             sensing: ArmSensing::new(machine),
             attitude: AttitudeFilter::default(),
@@ -123,7 +126,8 @@ impl ArmEcu {
         }
 
         let demand = demand.filter(|_| self.state == State::Active).unwrap_or(ArmDemand::Off);
-        let opening = self.openings(&demand, &readings);
+        let wanted = self.openings(&demand, &readings);
+        let opening = PerWheel::from_fn(|w| self.limit.hold(wanted[w], readings.stroke_mm[w]));
         let current_ma = opening.map(pins::valve_ma);
         out.solenoid_a_ma = current_ma.map(|[a, _]| a);
         out.solenoid_b_ma = current_ma.map(|[_, b]| b);

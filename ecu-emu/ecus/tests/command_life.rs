@@ -181,6 +181,31 @@ fn valves_open_as_told_up_to_the_cap_while_both_streams_live() {
 }
 
 #[test]
+fn valves_stay_closed_towards_a_stroke_end() {
+    for (stroke_mm, percent, opens) in
+        [(0.0, -20.0, false), (0.0, 20.0, true), (501.0, 20.0, false), (501.0, -20.0, true)]
+    {
+        let mut arm = Arm::new();
+        arm.pins.stroke_mv = PerWheel::splat(pins::stroke_mv(stroke_mm * 1e-3));
+        arm.send(ArmTargetMode::ManualValve, 510.0);
+        let [fr_percent, fl_percent, mr_percent, ml_percent, br_percent, bl_percent] = [percent; 6];
+        let valve = ArmValve {
+            fr_percent,
+            fl_percent,
+            mr_percent,
+            ml_percent,
+            br_percent,
+            bl_percent,
+            counter: 0,
+        };
+        arm.ecu.on_frame(arm.now, Port::Can1, &valve.encode().unwrap());
+        assert_eq!(arm.tick().state, ArmStatusState::Active);
+        let current_ma = arm.out.solenoid_a_ma.sum() + arm.out.solenoid_b_ma.sum();
+        assert_eq!(current_ma, if opens { 6.0 * 480.0 } else { 0.0 }, "{stroke_mm} {percent}");
+    }
+}
+
+#[test]
 fn a_broken_position_sensor_is_a_fault_until_it_is_whole() {
     let mut arm = Arm::new();
     let whole = arm.pins;

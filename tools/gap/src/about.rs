@@ -1,0 +1,181 @@
+//! `about.toml`: what is known of a set of logs, foremost the ground each was driven on.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use xt28_sim::{Ramp, Terrain};
+
+use crate::GapError;
+use crate::toml_error::locate;
+
+/// What is known of one machine's logs.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct About {
+    /// Name of the case.
+    pub case: String,
+    /// Day of the runs, as written.
+    pub date: Option<String>,
+    /// The machine, in words.
+    pub machine: Option<String>,
+    /// Machine file that it is believed to be.
+    pub nominal: Option<String>,
+    /// Text on how the machine reads its sensors.
+    pub conventions: Option<String>,
+    /// DBC that the logs were sent with.
+    pub dbc: Option<String>,
+    /// The logs.
+    pub run: Vec<Run>,
+}
+
+/// One log.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    /// File name, beside `about.toml`.
+    pub file: String,
+    /// What was driven.
+    pub scenario: Option<String>,
+    /// Length, s.
+    pub seconds: Option<f64>,
+    /// What it was driven on.
+    pub terrain: Ground,
+    /// The ramp, where the terrain is one.
+    pub ramp: Option<Ramp>,
+    /// Recommended for fitting, rather than for validation.
+    #[serde(default)]
+    pub fit: bool,
+}
+
+/// Kind of terrain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ground {
+    /// Level.
+    Flat,
+    /// A ramp under one side, level elsewhere.
+    Ramp,
+}
+
+impl About {
+    /// Reads the file at `path`.
+    ///
+    /// # Errors
+    /// [`GapError::Read`] or [`GapError::Toml`].
+    pub fn load(path: &Path) -> Result<Self, GapError> {
+        let text = std::fs::read_to_string(path).map_err(|source| GapError::read(path, source))?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads `text`; `path` names it in errors.
+    ///
+    /// # Errors
+    /// [`GapError::Toml`], also for a ramp without its stations or stations without a ramp.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, GapError> {
+        let refuse = |(line, problem)| GapError::Toml { path: path.to_owned(), line, problem };
+        let about: Self = toml::from_str(text).map_err(|error| refuse(locate(text, &error)))?;
+        for run in &about.run {
+            if let Err(problem) = run.terrain() {
+                let line = text.lines().position(|line| line.contains(&run.file));
+                let problem = format!("run {}: {problem}", run.file);
+                return Err(refuse((line.map_or(1, |line| line + 1), problem)));
+            }
+        }
+        Ok(about)
+    }
+
+    /// The run whose log has the file name of `log`.
+    #[must_use]
+    pub fn run_of(&self, log: &Path) -> Option<&Run> {
+        let name = log.file_name()?.to_str()?;
+        self.run.iter().find(|run| run.file == name)
+    }
+
+    /// The ground that `log` was driven on, as the file at `path` says.
+    ///
+    /// # Errors
+    /// [`GapError::Read`], [`GapError::Toml`] or [`GapError::NoRun`].
+    pub fn terrain_of(path: &Path, log: &Path) -> Result<Terrain, GapError> {
+        let about = Self::load(path)?;
+        let run = about.run_of(log).ok_or_else(|| GapError::NoRun {
+            path: path.to_owned(),
+            log: log.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        })?;
+        run.terrain().map_err(|problem| GapError::Toml {
+            path: path.to_owned(),
+            line: 1,
+            problem: problem.to_owned(),
+        })
+    }
+}
+
+impl Run {
+    /// The ground as the simulator has it.
+    ///
+    /// # Errors
+    /// A sentence on what is missing or no ramp.
+    pub fn terrain(&self) -> Result<Terrain, &'static str> {
+        match (self.terrain, &self.ramp) {
+            (Ground::Flat, None) => Ok(Terrain::Flat),
+            (Ground::Flat, Some(_)) => Err("terrain = \"flat\" has no ramp; remove one of the two"),
+            (Ground::Ramp, None) => {
+                Err("terrain = \"ramp\" needs ramp = { x_m, height_m, y_min_m, y_max_m }")
+            }
+            (Ground::Ramp, Some(ramp)) => ramp.check().map(|()| Terrain::ramp(ramp)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const ABOUT: &str = r#"
+case = "one"
+dbc = "a.dbc"
+[[run]]
+file = "flat.log.gz"
+terrain = "flat"
+fit = true
+[[run]]
+file = "ramp.log"
+terrain = "ramp"
+ramp = { x_m = [4, 7, 8.5, 11.5], height_m = 0.3, y_min_m = -1.9, y_max_m = -0.5 }
+"#;
+
+    fn parse(text: &str) -> Result<About, GapError> {
+        About::parse(text, Path::new("about.toml"))
+    }
+
+    #[test]
+    fn finds_the_ground_of_a_run() {
+        let about = parse(ABOUT).unwrap();
+        let flat = about.run_of(Path::new("somewhere/flat.log.gz")).unwrap();
+        assert!(flat.fit && matches!(flat.terrain(), Ok(Terrain::Flat)));
+        let ramp = about.run_of(Path::new("ramp.log")).unwrap().terrain().unwrap();
+        assert!((ramp.height_m(8.0, -1.0) - 0.3).abs() < 1e-6);
+        assert!(ramp.height_m(8.0, 1.0).abs() < 1e-6);
+        assert!(about.run_of(Path::new("other.log")).is_none());
+    }
+
+    #[test]
+    fn says_what_is_wrong_with_its_line() {
+        let error = parse(&ABOUT.replace("height_m", "height_mm")).unwrap_err().to_string();
+        assert!(error.starts_with("about.toml:11:") && error.contains("height_mm"), "{error}");
+        let error = parse(&ABOUT.replace("7, 8.5", "9, 8.5")).unwrap_err().to_string();
+        assert!(error.starts_with("about.toml:9: run ramp.log: x_m must grow"), "{error}");
+        let error = parse(&ABOUT.replace("\"flat\"", "\"swamp\"")).unwrap_err().to_string();
+        assert!(error.starts_with("about.toml:6:") && error.contains("swamp"), "{error}");
+        let error = parse(&ABOUT.replace("\"flat\"", "\"ramp\"")).unwrap_err().to_string();
+        assert!(error.contains("needs ramp"), "{error}");
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_panics(text in "([a-z_\\[\\]]{0,10} ?= ?[\\[\\]{}\"a-z.,0-9 -]{0,24}\n){0,6}") {
+            let _ = parse(&text);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Why a log cannot be read or replayed: one line each, with file, line and remedy.
+
+use std::path::{Path, PathBuf};
+
+use xt28_bus::candump::ReadError;
+
+/// Why a log cannot be read or replayed.
+#[derive(Debug, thiserror::Error)]
+pub enum GapError {
+    /// A file could not be read.
+    #[error("{path}: cannot read: {source}; give an existing, readable file")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file could not be written.
+    #[error("{path}: cannot write: {problem}; give a folder that exists and has room")]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What went wrong.
+        problem: String,
+    },
+    /// A TOML file is not what it should be.
+    #[error("{path}:{line}: {problem}")]
+    Toml {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// What is wrong there, and what would be right.
+        problem: String,
+    },
+    /// The DBC is no database.
+    #[error("{problem}")]
+    Dbc {
+        /// File, line and problem.
+        problem: String,
+    },
+    /// The DBC lacks a message or a signal that a replay needs.
+    #[error(
+        "{path}: no {what}, which {channels} should come from; use the DBC that the log was sent with, or name its signals in a mapping file"
+    )]
+    Missing {
+        /// The DBC.
+        path: PathBuf,
+        /// "message `PosFront`", or "signal `FR` in message `PosFront`".
+        what: String,
+        /// Channels that need it.
+        channels: String,
+    },
+    /// A signal's unit is not one of its channel.
+    #[error(
+        "{path}: signal `{signal}` is in `{unit}`, which is no unit of {channel} ({known}); give the right one in a mapping file"
+    )]
+    Unit {
+        /// The DBC.
+        path: PathBuf,
+        /// Message and signal.
+        signal: String,
+        /// The unit found.
+        unit: String,
+        /// The channel.
+        channel: String,
+        /// Units that would do.
+        known: &'static str,
+    },
+    /// The log is not candump's, or is cut.
+    #[error(transparent)]
+    Log(#[from] ReadError),
+    /// The log holds no sample of something that a replay needs.
+    #[error(
+        "{log}: no frame `{message}` in the log, which {channel} comes from; check that log and DBC belong together"
+    )]
+    Silent {
+        /// The log.
+        log: String,
+        /// The message's name in the DBC.
+        message: String,
+        /// The channel.
+        channel: String,
+    },
+    /// `about.toml` does not speak of this log.
+    #[error("{path}: no [[run]] with file = \"{log}\"; add it, or give the terrain with --terrain")]
+    NoRun {
+        /// The file.
+        path: PathBuf,
+        /// The log's file name.
+        log: String,
+    },
+    /// A command of the log is none that this bench's bus can say.
+    #[error("{log}: command at {at_s:.3} s: {problem}; check its unit and scale in the mapping")]
+    Command {
+        /// The log.
+        log: String,
+        /// Seconds from the log's first frame.
+        at_s: f64,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+impl GapError {
+    pub(crate) fn read(path: &Path, source: std::io::Error) -> Self {
+        Self::Read { path: path.to_owned(), source }
+    }
+}

@@ -1,0 +1,86 @@
+//! What is wrong with a log without making it unreadable: frames lost, cut short, or out of order.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// Something a reader of the result must know of its log. Displays as one line with file and line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LogFault {
+    /// The log's name.
+    pub log: Arc<str>,
+    /// Line of the first occurrence, from 1.
+    pub line: u64,
+    /// What it is.
+    pub kind: FaultKind,
+}
+
+/// Kinds of [`LogFault`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum FaultKind {
+    /// The log ends in the middle of its last line, which is left out.
+    Cut,
+    /// Times go back; the frames up to the time before are left out.
+    ClockBack {
+        /// The largest step back, s.
+        by_s: f64,
+        /// Frames left out.
+        frames: u64,
+    },
+    /// Frames of a cyclic message are not there.
+    Dropped {
+        /// Message.
+        message: String,
+        /// Times the message was away for more than one and a half periods.
+        gaps: u64,
+        /// Periods without a frame, over all gaps.
+        frames: u64,
+        /// The longest time without, s.
+        longest_s: f64,
+    },
+    /// Frames have another number of bytes than the DBC says; they are left out.
+    WrongLength {
+        /// Message.
+        message: String,
+        /// Bytes in the first such frame.
+        found: usize,
+        /// Bytes in the DBC.
+        wanted: usize,
+        /// Frames left out.
+        frames: u64,
+    },
+    /// A value is not a number, or is outside the range that the DBC gives; it is left out.
+    Unbelievable {
+        /// Channel.
+        channel: String,
+        /// What is wrong with the first.
+        problem: String,
+        /// Values left out.
+        values: u64,
+    },
+}
+
+impl fmt::Display for LogFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: ", self.log, self.line)?;
+        match &self.kind {
+            FaultKind::Cut => write!(f, "log is cut in the middle of this line; it is left out"),
+            FaultKind::ClockBack { by_s, frames } => write!(
+                f,
+                "clock jumps back by {by_s:.6} s; {frames} frames are left out until it has caught up, so cut the log there if they matter"
+            ),
+            FaultKind::Dropped { message, gaps, frames, longest_s } => write!(
+                f,
+                "{message} is missing {frames} frames in {gaps} gaps from here on, the longest {:.1} ms; the value before is held",
+                longest_s * 1e3
+            ),
+            FaultKind::WrongLength { message, found, wanted, frames } => write!(
+                f,
+                "{message} has {found} bytes where the DBC says {wanted}; {frames} such frames are left out, so check that log and DBC belong together"
+            ),
+            FaultKind::Unbelievable { channel, problem, values } => write!(
+                f,
+                "{channel} cannot be believed: {problem}; {values} such values are left out, so check the signal's range in the DBC"
+            ),
+        }
+    }
+}

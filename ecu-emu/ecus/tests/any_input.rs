@@ -141,16 +141,20 @@ impl Rig {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
     #[test]
     fn nothing_moves_without_a_fresh_command(
         events in prop::collection::vec(any_event(), 1..200),
     ) {
         let mut rig = Rig::new();
         let (mut arm_out, mut drive_out) = (ArmOutputs::default(), DriveOutputs::default());
+        let pump_total_ma = |out: &DriveOutputs| out.pump_ma.iter().sum::<f64>();
         for event in &events {
             if !rig.happen(event) {
                 continue;
             }
+            let pump_before_ma = pump_total_ma(&drive_out);
             rig.arm.tick(rig.now, &standing_arm(), &mut arm_out);
             rig.drive.tick(rig.now, &rolling_drive(), &mut drive_out);
             if rig.arm.state() == State::Active {
@@ -165,6 +169,8 @@ proptest! {
                 let steer_ma = drive_out.steer_front_a_ma + drive_out.steer_front_b_ma
                     + drive_out.steer_rear_a_ma + drive_out.steer_rear_b_ma;
                 prop_assert_eq!(steer_ma, 0.0);
+                // The throttle may still run out, but no more than that.
+                prop_assert!(pump_total_ma(&drive_out) <= pump_before_ma);
             }
         }
     }

@@ -8,8 +8,7 @@ use crate::life::State;
 
 /// Slower than this the machine counts as standing, m/s (assumed).
 const STANDING_M_S: f64 = 0.02;
-/// So long after a safe stop the brake is applied even to a machine that still rolls (assumed: four
-/// times as long as the drive needs to stop from full speed).
+/// So long after a safe stop the brake is applied even to a machine that still rolls (assumed).
 const ROLLING_MAX: Duration = Duration::from_secs(5);
 
 /// The brake's logic. Released at the start, as the public firmware has it (facts 4.1).

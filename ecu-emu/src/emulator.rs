@@ -57,15 +57,15 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// A machine that has stood for 5 s with closed valves.
+    /// A machine that has stood for 5 s, its arms set to their strokes by hand.
     #[must_use]
     pub fn new(config: &EmulatorConfig) -> Self {
         let machine = &config.machine;
         let mut plant = Vehicle::new(machine, &config.terrain, config.stroke_m);
         let engine = Engine::new(machine.drive.engine_speed_rpm);
-        let standing = wiring::standing(engine.speed_rpm());
         for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
-            plant.step(&standing);
+            let setting = wiring::setting(&config.stroke_m, plant.state(), engine.speed_rpm());
+            plant.step(&setting);
         }
         Self {
             arm_ecu: ArmEcu::new(machine),

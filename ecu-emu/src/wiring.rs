@@ -52,7 +52,11 @@ pub(crate) fn actuation(arm: &ArmOutputs, drive: &DriveOutputs, engine_rpm: f64)
     }
 }
 
-/// A machine at rest before its ECUs have run.
-pub(crate) const fn standing(engine_rpm: f64) -> Actuation {
-    Actuation::idle(engine_rpm)
+/// Opening per stroke error while the arms are set by hand, 1/m.
+const SETTING_GAIN_M: f64 = 10.0;
+
+/// A machine whose arms somebody sets to `stroke_m` before its ECUs run, wheels free to roll.
+pub(crate) fn setting(stroke_m: &PerWheel<f64>, s: &VehicleState, engine_rpm: f64) -> Actuation {
+    let opening = |w: Wheel| (SETTING_GAIN_M * (stroke_m[w] - s.stroke_m[w])).clamp(-0.3, 0.3);
+    Actuation { arm_opening: PerWheel::from_fn(opening), ..Actuation::idle(engine_rpm) }
 }

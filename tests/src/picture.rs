@@ -82,7 +82,7 @@ impl Picture<'_> {
         let time = chart::time_scale(self.scenario.duration_s, at[0], width);
         for event in &self.scenario.events {
             let what = format!("{} dies", event.kill);
-            svg.text([time.pixel(event.at_s), at[1] + 28.0], "tick", Anchor::Middle, &what);
+            svg.text([time.pixel(event.at_s), at[1] + 35.0], "tick", Anchor::Middle, &what);
         }
     }
 

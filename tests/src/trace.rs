@@ -103,11 +103,18 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose of the front axle when the antenna is at `antenna_m`. The antenna's own lean with
-    /// roll and pitch is left out: level ground is assumed where poses are judged.
+    /// The pose of the front axle when the antenna is at `antenna_m`. The antenna leans with the
+    /// frame it stands on: right side high takes it to the left, nose up takes it back (facts 1.1).
     #[must_use]
-    pub fn from_antenna(machine: &Machine, antenna_m: [f64; 2], heading_rad: f64) -> Self {
-        let [ahead_m, left_m, _] = machine.sensors.gnss_antenna_m;
+    pub fn from_antenna(
+        machine: &Machine,
+        antenna_m: [f64; 2],
+        heading_rad: f64,
+        lean: Attitude,
+    ) -> Self {
+        let [ahead_m, left_m, up_m] = machine.sensors.gnss_antenna_m;
+        let ahead_m = ahead_m - up_m * lean.pitch_rad.sin();
+        let left_m = left_m + up_m * lean.roll_rad.sin();
         let (sin, cos) = heading_rad.sin_cos();
         Self {
             x_m: antenna_m[0] - (cos * ahead_m - sin * left_m),
@@ -130,7 +137,8 @@ impl Trace {
     pub fn pose_at(&self, machine: &Machine, at_s: f64) -> Option<Pose> {
         let antenna = self.antenna_m.known_at(at_s)?;
         let motion = self.motion.known_at(at_s)?;
-        Some(Pose::from_antenna(machine, antenna.value, motion.value.heading_rad))
+        let lean = self.attitude.known_at(at_s).map_or_else(Attitude::default, |a| a.value);
+        Some(Pose::from_antenna(machine, antenna.value, motion.value.heading_rad, lean))
     }
 }
 
@@ -140,9 +148,15 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
-    fn the_antenna_stands_behind_the_axle() {
-        let pose = Pose::from_antenna(&Machine::xt28(), [10.0, 4.7], FRAC_PI_2);
-        assert!((pose.x_m - 10.0).abs() < 1e-12 && (pose.y_m - 5.0).abs() < 1e-12, "{pose:?}");
+    fn the_antenna_stands_behind_the_axle_and_leans_with_the_frame() {
+        let pose = |lean| Pose::from_antenna(&Machine::xt28(), [10.0, 4.7], FRAC_PI_2, lean);
+        let level = pose(Attitude::default());
+        assert!((level.x_m - 10.0).abs() < 1e-12 && (level.y_m - 5.0).abs() < 1e-12, "{level:?}");
+        // 3.1 m up, heading north: the left is west.
+        let right_high = pose(Attitude { roll_rad: 0.1, pitch_rad: 0.0 });
+        assert!((right_high.x_m - 10.3095).abs() < 1e-4, "{right_high:?}");
+        let nose_up = pose(Attitude { roll_rad: 0.0, pitch_rad: 0.1 });
+        assert!((nose_up.y_m - 5.3095).abs() < 1e-4, "{nose_up:?}");
     }
 
     #[test]

@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn a_cut_last_line_is_left_out_and_a_bad_one_is_named() {
         let csv = csv();
-        let cut = Truth::read(csv[..csv.len() - 12].as_bytes(), "t.csv", 0.0).unwrap();
+        let cut = Truth::read(&csv.as_bytes()[..csv.len() - 12], "t.csv", 0.0).unwrap();
         assert_eq!(cut.ground_force_n.samples().len(), 2);
         let bad = csv.replacen("\n0.010", "\nten", 1);
         let error = Truth::read(bad.as_bytes(), "t.csv", 0.0).unwrap_err().to_string();

@@ -2,8 +2,9 @@
 
 use proptest::prelude::*;
 use xt28_dbc::messages::{
-    ArmStatus, ArmStatusMode, ArmStatusReason, ArmStatusState, ArmTarget, ArmTargetMode, Attitude, CylLoadFront, CylLoadMidRear, DriveTarget,
-    GnssPosition, GnssVelocity, PosFront, PosMidRear, WheelSpeedJoint, WheelSpeedSigned,
+    ArmStatus, ArmStatusMode, ArmStatusReason, ArmStatusState, ArmTarget, ArmTargetMode, Attitude,
+    CylLoadFront, CylLoadMidRear, DriveTarget, GnssPosition, GnssVelocity, PosFront, PosMidRear,
+    WheelSpeedJoint, WheelSpeedSigned,
 };
 use xt28_dbc::{CanId, Frame};
 use xt28_machine::Wheel;
@@ -31,7 +32,8 @@ fn near(a: f64, b: f64) -> bool {
 #[test]
 fn wire_units_become_si() {
     let speeds = WheelSpeedSigned { fr_rpm: -6.0, bl_rpm: 12.0, ..Default::default() };
-    let joints = WheelSpeedJoint { front_joint_deg: 9.0, rear_joint_deg: -5.0, ..Default::default() };
+    let joints =
+        WheelSpeedJoint { front_joint_deg: 9.0, rear_joint_deg: -5.0, ..Default::default() };
     let trace = decoded([
         GnssPosition { east_mm: -300.0, north_mm: 4980.0 }.encode().unwrap(),
         GnssVelocity { heading_deg: 337.0, up_mm_s: 25.0, ..Default::default() }.encode().unwrap(),
@@ -115,6 +117,18 @@ proptest! {
 
 /// Every identifier that is read, and one that is not.
 const IDS: &[u32] = &[
-    0x18FF_6027, 0x18FF_6127, 0x18FE_202B, 0x18FE_1012, 0x0CFF_5229, 0x18FE_1026, 0x18FE_1025,
-    0x18FE_102E, 0x18FE_102D, 0x0CFF_4027, 0x0CFF_4127, 0x0CFF_5028, 0x0CFF_5129, 0x0000_0001,
+    0x18FF_6027,
+    0x18FF_6127,
+    0x18FE_202B,
+    0x18FE_1012,
+    0x0CFF_5229,
+    0x18FE_1026,
+    0x18FE_1025,
+    0x18FE_102E,
+    0x18FE_102D,
+    0x0CFF_4027,
+    0x0CFF_4127,
+    0x0CFF_5028,
+    0x0CFF_5129,
+    0x0000_0001,
 ];

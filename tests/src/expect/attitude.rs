@@ -25,7 +25,7 @@ impl RollPeak {
         let (what_peak, what_end) = ("greatest roll", "roll at the end");
         let by_size = |a: &f64, b: &f64| a.abs().total_cmp(&b.abs());
         let degrees = || rolls.iter().map(|s| s.value.roll_rad.to_degrees());
-        match (degrees().max_by(by_size), degrees().last()) {
+        match (degrees().max_by(by_size), degrees().next_back()) {
             (Some(peak_deg), Some(end_deg)) => vec![
                 Finding::of(what_peak, peak_deg, peak_bound, "deg"),
                 Finding::of(what_end, end_deg, end_bound, "deg"),

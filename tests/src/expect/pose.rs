@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::Evidence;
 use crate::series::mean;
-use crate::trace::{Pose, wrapped_rad};
+use crate::trace::{Attitude, Pose, wrapped_rad};
 use crate::{Bound, Finding};
 
 /// Ends with the front axle at a pose of the local frame.
@@ -58,5 +58,6 @@ fn last_pose(evidence: &Evidence<'_>) -> Option<Pose> {
     // The mean of directions, so that headings about half a turn do not cancel.
     let sin = mean(motions, |motion| motion.heading_rad.sin())?;
     let cos = mean(motions, |motion| motion.heading_rad.cos())?;
-    Some(Pose::from_antenna(machine, antenna_m, sin.atan2(cos)))
+    let lean = trace.attitude.last().map_or_else(Attitude::default, |attitude| attitude.value);
+    Some(Pose::from_antenna(machine, antenna_m, sin.atan2(cos), lean))
 }

@@ -18,9 +18,9 @@ pub struct RearFollows {
 /// A bend: the front joint is at least this far over.
 const BEND_RAD: f64 = 0.05;
 /// Settled: both joints stay within a band of this width ...
-const BAND_RAD: f64 = 0.005;
-/// ... for this long.
-const SETTLED_S: f64 = 1.0;
+const BAND_RAD: f64 = 0.0026;
+/// ... for this long: longer than the turning points of their swing, which takes some 25 s.
+const SETTLED_S: f64 = 6.0;
 
 impl RearFollows {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {

@@ -42,7 +42,7 @@ pub(super) struct Chart<'a> {
 }
 
 const LEFT: f64 = 54.0;
-const TOP: f64 = 34.0;
+const TOP: f64 = 40.0;
 const BOTTOM: f64 = 30.0;
 
 /// Time over the width of a chart at `x`.

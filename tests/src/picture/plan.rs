@@ -10,10 +10,13 @@ use crate::finding::significant;
 use crate::trace::Pose;
 use crate::{Expectation, Ground};
 
-/// Footprints on the way are this far apart, m: a little more than the machine is long.
+/// Footprints are at least this far apart along the way, m: a little more than the machine is
+/// long. On a shorter way the first one is drawn faintly under the last.
 const FOOTPRINTS_APART_M: f64 = 10.0;
-/// A run that ends nearer to its start than this is drawn with one footprint, m.
-const STOOD_M: f64 = 0.5;
+/// Steps in which the way is measured, m.
+const STEP_M: f64 = 0.3;
+/// The largest scale: a machine that stands does not fill the page.
+const PIXELS_PER_M_MAX: f64 = 42.0;
 
 /// Everything of the plan view in metres, with the scale that fits it to the page.
 pub(super) struct Plan<'a> {
@@ -29,6 +32,8 @@ pub(super) struct Plan<'a> {
 /// Where the three frames are at one instant.
 struct Footprint {
     at_s: f64,
+    /// Drawn faintly, for another one is drawn over it.
+    ghost: bool,
     /// Front, middle, rear: the frame's origin (front axle of the straight machine) and heading.
     frames: [Pose; 3],
 }
@@ -39,6 +44,10 @@ const HEIGHT_MAX: f64 = 430.0;
 const AIR_M: f64 = 0.8;
 /// Drawn width of a tyre, m.
 const TYRE_M: f64 = 0.6;
+/// Where the time is written, m to the right of the machine's centre line.
+const LABEL_M: f64 = 1.85;
+/// Room that a target's arrow and name take, m.
+const TARGET_M: f64 = 3.2;
 /// Ends and half width of the drawn frames, m from the front axle of the straight machine.
 const HULLS: [([f64; 2], f64); 3] =
     [([-1.75, 1.8], 0.8), ([-4.77, -1.95], 0.62), ([-7.3, -4.98], 0.8)];
@@ -48,7 +57,7 @@ impl<'a> Plan<'a> {
         let footprints = footprints(picture);
         let path_m = path(picture);
         let corners = footprints.iter().flat_map(|f| f.outline(picture.machine));
-        let target = target(picture).map(|t| [t.0.x_m, t.0.y_m]);
+        let target = target(picture).map(|(pose, _)| placed(&pose, [TARGET_M, 0.0]));
         let (mut low_m, mut high_m) = ([-8.0, -2.2], [3.0, 2.2]);
         for point in path_m.iter().copied().chain(corners).chain(target) {
             for axis in 0..2 {
@@ -61,7 +70,7 @@ impl<'a> Plan<'a> {
             high_m[axis] += AIR_M;
         }
         let room = (width - LEFT - 8.0) / (high_m[0] - low_m[0]);
-        let pixels_per_m = room.min(HEIGHT_MAX / (high_m[1] - low_m[1]));
+        let pixels_per_m = room.min(HEIGHT_MAX / (high_m[1] - low_m[1])).min(PIXELS_PER_M_MAX);
         // What the height limit leaves over goes to both sides.
         let spare_m = (width - LEFT - 8.0) / pixels_per_m - (high_m[0] - low_m[0]);
         low_m[0] -= spare_m / 2.0;
@@ -165,7 +174,7 @@ impl<'a> Plan<'a> {
 impl Footprint {
     /// Corners of the three hulls, m.
     fn outline(&self, machine: &Machine) -> impl Iterator<Item = [f64; 2]> {
-        let half_m = machine.wheels.track_m / 2.0 + TYRE_M / 2.0;
+        let half_m = machine.wheels.track_m / 2.0 + TYRE_M;
         let hulls = self.frames.into_iter().zip(HULLS);
         hulls.flat_map(move |(frame, ([back, front], _))| {
             [[back, -half_m], [front, -half_m], [front, half_m], [back, half_m]]
@@ -174,7 +183,7 @@ impl Footprint {
     }
 
     fn draw(&self, svg: &mut Svg, machine: &Machine, at: &impl Fn([f64; 2]) -> [f64; 2]) {
-        svg.open("opacity=\"0.8\"");
+        svg.open(if self.ghost { "opacity=\"0.25\"" } else { "opacity=\"0.85\"" });
         let joints = [machine.articulation.front_joint_x_m, machine.articulation.rear_joint_x_m];
         for (frame, ([back, front], half)) in self.frames.iter().zip(HULLS) {
             // A hull tapers towards the joints, as the frames do.
@@ -227,8 +236,8 @@ impl Footprint {
             4.5,
             &format!("fill=\"#fff\" stroke=\"{}\" stroke-width=\"2\"", palette::PATH),
         );
-        let [x, y] = at(placed(front, [0.15, 0.0]));
-        svg.text([x + 5.0, y - 8.0], "tick", Anchor::Start, &format!("{:.0} s", self.at_s));
+        let [x, y] = at(placed(front, [0.0, -LABEL_M]));
+        svg.text([x, y + 6.0], "key", Anchor::Middle, &format!("{:.0} s", self.at_s));
     }
 }
 
@@ -259,31 +268,40 @@ fn path(picture: &Picture<'_>) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Footprints at the start, the end, and between as far apart as keeps them from overlapping.
+/// Footprints at the start, at the end, and evenly between.
 fn footprints(picture: &Picture<'_>) -> Vec<Footprint> {
     let Picture { trace, machine, .. } = picture;
-    let fixes = trace.antenna_m.samples().iter();
-    let poses: Vec<(f64, Pose)> =
-        fixes.filter_map(|fix| Some((fix.at_s, trace.pose_at(machine, fix.at_s)?))).collect();
-    let (Some(&first), Some(&last)) = (poses.first(), poses.last()) else {
-        return Vec::new();
-    };
-    let apart_m = |a: &Pose, b: &Pose| (a.x_m - b.x_m).hypot(a.y_m - b.y_m);
-    let mut chosen = vec![first];
-    for pose in &poses {
-        let clear = |other: &Pose| apart_m(&pose.1, other) > FOOTPRINTS_APART_M;
-        if chosen.last().is_none_or(|before| clear(&before.1)) && clear(&last.1) {
-            chosen.push(*pose);
+    // Steps longer than the receiver's noise, so that standing adds no way.
+    let mut way: Vec<(f64, f64, Pose)> = Vec::new();
+    for fix in trace.antenna_m.samples() {
+        let Some(pose) = trace.pose_at(machine, fix.at_s) else { continue };
+        let step_m = |last: &Pose| (pose.x_m - last.x_m).hypot(pose.y_m - last.y_m);
+        match way.last() {
+            None => way.push((fix.at_s, 0.0, pose)),
+            Some((_, along_m, last)) if step_m(last) > STEP_M => {
+                way.push((fix.at_s, along_m + step_m(last), pose));
+            }
+            Some(_) => {}
         }
     }
-    if apart_m(&first.1, &last.1) > STOOD_M {
-        chosen.push(last);
+    let Some(&(_, length_m, _)) = way.last() else { return Vec::new() };
+    let spans = (length_m / FOOTPRINTS_APART_M).floor().max(1.0);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a handful
+    let count = if length_m > STEP_M { spans as u32 } else { 0 };
+    let mut chosen: Vec<Footprint> = (0..=count)
+        .filter_map(|n| {
+            let wanted_m = length_m * f64::from(n) / spans;
+            let &(at_s, _, front) = way.iter().find(|(_, along_m, _)| *along_m >= wanted_m)?;
+            let joints = trace.joint_rad.known_at(at_s).map_or([0.0; 2], |joint| joint.value);
+            let ghost = length_m < FOOTPRINTS_APART_M && n == 0 && count > 0;
+            Some(Footprint { at_s, ghost, frames: frames(machine, front, joints) })
+        })
+        .collect();
+    // The machine stands at the end of its way until the run is over.
+    if let (Some(last), Some(fix)) = (chosen.last_mut(), trace.antenna_m.last()) {
+        last.at_s = fix.at_s;
     }
-    let footprint = |(at_s, front): (f64, Pose)| {
-        let joints = trace.joint_rad.known_at(at_s).map_or([0.0; 2], |joint| joint.value);
-        Footprint { at_s, frames: frames(machine, front, joints) }
-    };
-    chosen.into_iter().map(footprint).collect()
+    chosen
 }
 
 /// The three frames from the front one's pose and the joint angles: each joint turns the frame

@@ -7,11 +7,7 @@ use crate::Failure;
 use crate::artefacts::Artefacts;
 
 /// Refuses.
-pub(crate) fn run(
-    _: &Setup,
-    bus: &str,
-    _: &Artefacts,
-) -> Result<(Recording, Cost), Failure> {
+pub(crate) fn run(_: &Setup, bus: &str, _: &Artefacts) -> Result<(Recording, Cost), Failure> {
     SocketCan::open(bus)?;
     Err(format!("{bus}: programs run on a real bus under Linux only; use --bus virtual").into())
 }

@@ -36,6 +36,6 @@ impl Pace {
 
     /// How late the latest tick was, ms; only in real time.
     pub(crate) fn lateness_max_ms(&self) -> Option<f64> {
-        self.realtime.then(|| self.lateness_max.as_secs_f64() * 1e3)
+        self.realtime.then_some(self.lateness_max.as_secs_f64() * 1e3)
     }
 }

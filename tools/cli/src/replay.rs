@@ -1,0 +1,73 @@
+//! `xt28 replay`: a field log's commands through our ECUs and plant, against what the log measured.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay as Run, Terrain};
+use xt28_machine::Machine;
+
+use crate::{Failure, Verdict};
+
+/// Feed the commands of a field log to our machine and compare what both did
+#[derive(Args)]
+pub(crate) struct Replay {
+    /// candump log, plain or gzipped
+    log: PathBuf,
+    /// DBC that the log was sent with
+    #[arg(long, value_name = "FILE")]
+    dbc: PathBuf,
+    /// Which signal of that DBC is which channel (TOML), where names differ from ours
+    #[arg(long, value_name = "FILE")]
+    mapping: Option<PathBuf>,
+    /// Machine file (TOML); the built-in machine when left out
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// Terrain file (TOML); else as about.toml says, else flat
+    #[arg(long, value_name = "FILE")]
+    terrain: Option<PathBuf>,
+    /// What is known of the logs (TOML); about.toml beside the log, if there
+    #[arg(long, value_name = "FILE", conflicts_with = "terrain")]
+    about: Option<PathBuf>,
+    /// Take a log that ends in the middle of a line as ending before it
+    #[arg(long)]
+    accept_cut: bool,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Draw our signals over the log's into this SVG file
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+}
+
+impl Replay {
+    pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let mapping = self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
+        let decoder = Decoder::load(&self.dbc, &mapping)?;
+        let log = FieldLog::load(&self.log, &decoder, self.accept_cut)?;
+        let machine =
+            self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
+        let replay = Run::run(&log, &machine, &self.ground()?)?;
+        let report = replay.report(&log, &self.dbc);
+        if self.json {
+            println!("{:#}", report.json());
+        } else {
+            print!("{}", report.table());
+        }
+        if let Some(path) = &self.plot {
+            replay.draw(&log, path)?;
+            eprintln!("wrote {}", path.display());
+        }
+        Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    fn ground(&self) -> Result<Terrain, Failure> {
+        if let Some(path) = &self.terrain {
+            return Ok(Terrain::load(path)?);
+        }
+        let beside = self.log.parent().unwrap_or(Path::new("")).join("about.toml");
+        match self.about.as_ref().or(Some(&beside).filter(|path| path.exists())) {
+            Some(path) => Ok(About::terrain_of(path, &self.log)?),
+            None => Ok(Terrain::Flat),
+        }
+    }
+}

@@ -158,8 +158,8 @@ impl Default for Vehicle {
             arm_pivot_y_m: 1.175,
             circuit_gain_nms: 10_000.0,
             mean_integral_nm: 145_000.0,
-            joint_stiffness_nm: 2.0e7,
-            joint_damping_nms: 1.0e6,
+            joint_stiffness_nm: 4.0e6,
+            joint_damping_nms: 3.4e5,
         }
     }
 }

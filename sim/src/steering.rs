@@ -1,4 +1,8 @@
 //! The two articulation joints: a valve turns the rest angle, the closed oil holds it.
+//!
+//! The same soft lock as a cylinder's: torque = k (rest - angle) - c d(angle)/dt, with the rest no
+//! further from the joint than the largest torque twists it. The damper acts on the joint's own
+//! rate, so against the scrub of the tyres the torque also bounds how fast the joint turns.
 
 use xt28_machine::Machine;
 

@@ -114,17 +114,11 @@ impl Vehicle {
                 angle_rad: motion[i].angle_rad,
                 rate_rad_s: motion[i].rate_rad_s,
             };
-            let before = self.memory.joints[i];
-            let after = self.steering.step(before, &input, dt_s);
-            self.memory.joints[i] = after;
-            let (stiffness_nm, damping_nms) =
-                (self.steering.stiffness_nm(), self.steering.damping_nms());
-            // The damper is in the oil too: it acts on the joint's rate against the valve's.
-            let rest_rate_rad_s = (after.rest_rad - before.rest_rad) / dt_s;
+            self.memory.joints[i] = self.steering.step(self.memory.joints[i], &input, dt_s);
             HingeSpring {
-                stiffness_nm,
-                damping_nms,
-                rest_rad: after.rest_rad + damping_nms / stiffness_nm * rest_rate_rad_s,
+                stiffness_nm: self.steering.stiffness_nm(),
+                damping_nms: self.steering.damping_nms(),
+                rest_rad: self.memory.joints[i].rest_rad,
             }
         })
     }

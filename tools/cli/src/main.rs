@@ -11,6 +11,7 @@ mod processes;
 #[cfg(not(target_os = "linux"))]
 #[path = "no_processes.rs"]
 mod processes;
+mod replay;
 mod run;
 mod scenarios;
 
@@ -32,6 +33,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Run(run::Run),
+    Replay(replay::Replay),
     Scenarios(scenarios::Scenarios),
     Config(config::Config),
 }
@@ -52,6 +54,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         None => run::Run::demo().execute(),
         Some(Command::Run(run)) => run.execute(),
+        Some(Command::Replay(replay)) => replay.execute(),
         Some(Command::Scenarios(scenarios)) => scenarios.execute(),
         Some(Command::Config(config)) => config.execute(),
     };

@@ -22,6 +22,9 @@ const BAND_RAD: f64 = 0.0026;
 /// ... for this long: longer than the turning points of their swing, which takes some 25 s.
 const SETTLED_S: f64 = 6.0;
 
+/// Where the joints have not settled, it is tried again this much later.
+const STRIDE_S: f64 = 0.5;
+
 impl RearFollows {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
         let ratio = evidence.machine.articulation.rear_ratio;
@@ -47,25 +50,29 @@ fn settled_ratios(evidence: &Evidence<'_>) -> Vec<f64> {
         let speed = wheels.map_or(0.0, |w| mean_speed_m_s(&w.value, machine.wheels.radius_m));
         speed.abs() > threshold_m_s && joint.value[0].abs() > BEND_RAD
     };
+    let bends = stretches(trace.joint_rad.samples(), bending);
+    bends.into_iter().flat_map(ratios_in_bend).collect()
+}
+
+/// The spans of one bend that count, none overlapping.
+fn ratios_in_bend(bend: &[Sample<[f64; 2]>]) -> Vec<f64> {
     let mut ratios = Vec::new();
-    for bend in stretches(trace.joint_rad.samples(), bending) {
-        let mut rest = bend;
-        while let Some(first) = rest.first() {
-            let (span, after) =
-                rest.split_at(rest.partition_point(|s| s.at_s < first.at_s + SETTLED_S));
-            if after.is_empty() {
-                break;
-            }
-            let still = |joint: usize| {
-                extent(span, |v| v[joint]).is_some_and(|(low, high)| high - low < BAND_RAD)
-            };
-            if still(0) && still(1) {
-                let front = mean(span, |v| v[0]);
-                let rear = mean(span, |v| v[1]);
-                ratios.extend(rear.zip(front).map(|(rear, front)| rear / front));
-            }
-            rest = after;
+    let mut rest = bend;
+    while let Some(first) = rest.first() {
+        let later = |by_s: f64| rest.partition_point(|s| s.at_s < first.at_s + by_s);
+        let span = &rest[..later(SETTLED_S)];
+        if span.len() == rest.len() {
+            break;
         }
+        let still = |joint: usize| {
+            extent(span, |v| v[joint]).is_some_and(|(low, high)| high - low < BAND_RAD)
+        };
+        let settled = still(0) && still(1);
+        if settled {
+            let (front, rear) = (mean(span, |v| v[0]), mean(span, |v| v[1]));
+            ratios.extend(rear.zip(front).map(|(rear, front)| rear / front));
+        }
+        rest = &rest[later(if settled { SETTLED_S } else { STRIDE_S })..];
     }
     ratios
 }

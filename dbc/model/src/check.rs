@@ -46,6 +46,7 @@ impl Database {
             }
             check_message(message, &mut say);
         }
+        problems.extend_from_slice(self.stray());
         problems
     }
 }
@@ -53,6 +54,9 @@ impl Database {
 fn check_message(message: &Message, say: &mut impl FnMut(Option<&Signal>, String)) {
     if message.period_ms == 0 {
         say(None, "has no cycle time; set GenMsgCycleTime".to_owned());
+    }
+    if message.len > 8 {
+        say(None, format!("has {} bytes; a classic CAN frame has up to 8", message.len));
     }
     if message.alive && !message.signals.iter().any(|s| s.name == "Counter" && s.field.length == 4)
     {
@@ -63,6 +67,9 @@ fn check_message(message: &Message, say: &mut impl FnMut(Option<&Signal>, String
     };
     if message.data_id != 0 && !(message.len == 8 && message.signals.iter().any(is_crc)) {
         say(None, "has a data ID but no CRC; add an 8-bit signal Crc in byte 7".to_owned());
+    }
+    if message.data_id == 0 && message.signals.iter().any(is_crc) {
+        say(None, "has a CRC that nothing checks; set E2eDataId, 1 to 65535".to_owned());
     }
     for (i, signal) in message.signals.iter().enumerate() {
         check_signal(message, signal, say);
@@ -94,11 +101,35 @@ fn check_signal(message: &Message, signal: &Signal, say: &mut impl FnMut(Option<
         let (min, max) = (field.min, field.max);
         say(Some(signal), format!("has range {min} to {max}, but its bits hold {low} to {high}"));
     }
+    for (i, (raw, name)) in signal.values.iter().enumerate() {
+        #[allow(clippy::cast_precision_loss)] // a table that long is out of every range
+        let value = *raw as f64 * field.factor + field.offset;
+        if value < field.min - slack || value > field.max + slack {
+            say(Some(signal), format!("names {raw} \"{name}\", which is out of its range"));
+        }
+        if signal.values[..i].iter().any(|(other, _)| other == raw) {
+            say(Some(signal), format!("names {raw} twice; drop one"));
+        }
+    }
+    if in_ring(message, signal) {
+        say(Some(signal), "is multiplexed by itself in the end; open the ring".to_owned());
+    }
     if let Some(presence) = &signal.present
         && message.signal(&presence.switch).is_none_or(|switch| !switch.is_switch)
     {
         say(Some(signal), format!("is multiplexed by {}, which is no switch", presence.switch));
     }
+}
+
+/// Following its switches never comes to a signal that is always there.
+fn in_ring(message: &Message, signal: &Signal) -> bool {
+    let mut signal = signal;
+    for _ in 0..=message.signals.len() {
+        let Some(presence) = &signal.present else { return false };
+        let Some(switch) = message.signal(&presence.switch) else { return false };
+        signal = switch;
+    }
+    true
 }
 
 /// Signals that can never be there together may share bits.

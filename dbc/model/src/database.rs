@@ -7,13 +7,15 @@ use can_dbc::{
     SignalExtendedValueType, ValueDescription, ValueType,
 };
 
-use crate::{Field, Kind, Message, Presence, Signal};
+use crate::stray::stray;
+use crate::{Field, Kind, Message, Presence, Problem, Signal};
 
 /// All messages of a database, by identifier.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Database {
     messages: Vec<Message>,
     by_id: BTreeMap<u32, usize>,
+    stray: Vec<Problem>,
 }
 
 /// Why a database was not read.
@@ -36,7 +38,8 @@ impl Database {
     /// # Errors
     /// [`ReadError`], with the line.
     pub fn parse(text: &str, file: &str) -> Result<Self, ReadError> {
-        let dbc = Dbc::try_from(text).map_err(|error| read_error(&error, file))?;
+        let dbc = Dbc::try_from(text).map_err(|error| read_error(&error, text, file))?;
+        check_identifiers(&dbc, text, file)?;
         let mut messages: Vec<Message> = Vec::with_capacity(dbc.messages.len());
         for message in &dbc.messages {
             messages.push(read_message(&dbc, message).map_err(|problem| ReadError {
@@ -46,7 +49,7 @@ impl Database {
             })?);
         }
         let by_id = messages.iter().enumerate().rev().map(|(i, m)| (m.id, i)).collect();
-        Ok(Self { messages, by_id })
+        Ok(Self { messages, by_id, stray: stray(&dbc) })
     }
 
     /// Messages, in the order of the file.
@@ -61,6 +64,11 @@ impl Database {
         self.by_id.get(&id).map(|&index| &self.messages[index])
     }
 
+    /// Statements about nothing declared.
+    pub(crate) fn stray(&self) -> &[Problem] {
+        &self.stray
+    }
+
     /// The message of that name.
     #[must_use]
     pub fn message_named(&self, name: &str) -> Option<&Message> {
@@ -68,13 +76,45 @@ impl Database {
     }
 }
 
-fn read_error(error: &can_dbc::DbcError, file: &str) -> ReadError {
+/// An 11-bit identifier with more bits has no frame, and the parser would cut it down to another.
+fn check_identifiers(dbc: &Dbc, text: &str, file: &str) -> Result<(), ReadError> {
+    const EXTENDED: u64 = 0x8000_0000;
+    const STANDARD_MAX: u64 = 0x7FF;
+    for (index, line) in text.lines().enumerate() {
+        let mut words = line.strip_prefix("BO_ ").unwrap_or_default().split([' ', ':']);
+        let (id, name) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+        // A line of a comment may look like a message; the parser knows which are.
+        let is_message = dbc.messages.iter().any(|message| message.name == name);
+        if let Ok(id) = id.parse::<u64>()
+            && is_message
+            && id & EXTENDED == 0
+            && id > STANDARD_MAX
+        {
+            return Err(ReadError {
+                file: file.to_owned(),
+                line: index + 1,
+                problem: format!("{name}: {id} has more than 11 bits; add 2147483648 for 29"),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Line of the first statement, comments left out, that holds what the parser quotes in `error`.
+fn line_of_quoted(error: &str, text: &str) -> Option<usize> {
+    let quoted = error.split('\'').nth(1)?;
+    let holds = |line: &str| !line.starts_with("CM_") && line.contains(quoted);
+    text.lines().position(holds).map(|index| index + 1)
+}
+
+fn read_error(error: &can_dbc::DbcError, source: &str, file: &str) -> ReadError {
     let text = error.to_string();
     // The parser's own message shows the place as " --> LINE:COLUMN".
     let line = text
         .split("-->")
         .nth(1)
         .and_then(|rest| rest.trim().split(':').next()?.parse().ok())
+        .or_else(|| line_of_quoted(&text, source))
         .unwrap_or(1);
     let problem = text.lines().last().unwrap_or("not a DBC").trim_start_matches([' ', '=']);
     ReadError { file: file.to_owned(), line, problem: problem.trim().to_owned() }
@@ -221,6 +261,19 @@ fn presence(
     if let Some(extended) = extended {
         let ranges = extended.mappings.iter().map(|m| (m.min_value, m.max_value)).collect();
         return Ok(Some(Presence { switch: extended.multiplexor_signal_name.clone(), ranges }));
+    }
+    let switches = message.signals.iter().filter(|s| {
+        matches!(
+            s.multiplexer_indicator,
+            MultiplexIndicator::Multiplexor
+                | MultiplexIndicator::MultiplexorAndMultiplexedSignal(_)
+        )
+    });
+    if switches.count() > 1 {
+        return Err(format!(
+            "{}.{} has several switches to go by; name its own with SG_MUL_VAL_",
+            message.name, signal.name
+        ));
     }
     let switch = switch.ok_or_else(|| {
         format!("{}.{} is multiplexed but the message has no switch", message.name, signal.name)

@@ -127,19 +127,24 @@ impl Field {
             return Err(out);
         }
         let number = (value - self.offset) / self.factor;
-        Ok(match self.kind {
+        let raw = match self.kind {
             Kind::Float32 => u64::from((number as f32).to_bits()),
             Kind::Float64 => number.to_bits(),
             Kind::Unsigned | Kind::Signed => {
-                let (low, high) = self.raw_range();
-                let whole = number.round();
-                if whole < low || whole > high {
+                let whole = round_half_away(number);
+                if whole < self.raw_range().0 || whole >= self.raw_end() {
                     return Err(out);
                 }
                 let bits = if whole < 0.0 { (whole as i64) as u64 } else { whole as u64 };
                 bits & self.mask()
             }
-        })
+        };
+        // What is sent must itself be allowed: rounding may step over the end of the range, and a
+        // float may overflow.
+        if self.check(self.physical(raw)).is_err() {
+            return Err(out);
+        }
+        Ok(raw)
     }
 
     /// Least and greatest physical value that the bits can hold.
@@ -204,6 +209,13 @@ impl Field {
         u64::MAX >> (64 - self.length)
     }
 
+    /// The first whole number above all raw ones. A power of two, so exact where the greatest raw
+    /// number of a long field is not.
+    fn raw_end(&self) -> f64 {
+        let bits = if self.kind == Kind::Signed { self.length - 1 } else { self.length };
+        2.0_f64.powi(i32::from(bits))
+    }
+
     #[allow(clippy::cast_precision_loss)]
     const fn raw_range(&self) -> (f64, f64) {
         match self.kind {
@@ -214,6 +226,15 @@ impl Field {
             _ => (0.0, self.mask() as f64),
         }
     }
+}
+
+/// The nearest whole number, halves away from zero. A decimal half such as 0.15 / 0.1 comes out a
+/// few units in the last place off; within four of them it counts as the half that was meant.
+fn round_half_away(number: f64) -> f64 {
+    // Where those units are coarse, no more than a thousandth: a whole number is not a half.
+    let room = (4.0 * f64::EPSILON * number.abs()).min(1e-3);
+    let half = number.trunc() + 0.5_f64.copysign(number);
+    if (number - half).abs() <= room { half.round() } else { number.round() }
 }
 
 #[cfg(test)]
@@ -236,6 +257,43 @@ mod tests {
         for (value, raw) in [(3.0, 2), (-3.0, -2_i8), (5.0, 3), (4.9, 2), (-5.0, -3)] {
             assert_eq!(f.to_raw(value).unwrap() as u8 as i8, raw, "{value}");
         }
+    }
+
+    #[test]
+    fn decimal_halves_round_away_from_zero_too() {
+        let f = Field { factor: 0.1, min: -100.0, max: 100.0, ..field(0, 16, false, Kind::Signed) };
+        for (value, raw) in
+            [(0.15, 2), (0.35, 4), (-0.15, -2), (0.149, 1), (0.05, 1), (99.95, 1000)]
+        {
+            assert_eq!(f.to_raw(value).unwrap() as u16 as i16, raw, "{value}");
+        }
+        // As large as a half can still be told from a whole number, the whole one stays.
+        let long = field(0, 51, false, Kind::Unsigned);
+        assert_eq!(long.to_raw(562_949_953_421_312.0), Ok(562_949_953_421_312));
+    }
+
+    #[test]
+    fn rounding_never_steps_over_the_range() {
+        let f = Field { min: -100.0, max: 100.0, ..field(0, 8, false, Kind::Signed) };
+        assert_eq!(f.to_raw(100.4), Ok(100));
+        for value in [100.5, -100.5] {
+            assert!(matches!(f.to_raw(value), Err(ValueError::OutOfRange { .. })), "{value}");
+        }
+    }
+
+    #[test]
+    fn sixty_four_bits_neither_wrap_nor_saturate() {
+        let signed = field(0, 64, false, Kind::Signed);
+        assert!(signed.to_raw(9_223_372_036_854_775_808.0).is_err());
+        assert_eq!(signed.to_raw(-9_223_372_036_854_775_808.0), Ok(1 << 63));
+        assert!(field(0, 64, false, Kind::Unsigned).to_raw(18_446_744_073_709_551_616.0).is_err());
+    }
+
+    #[test]
+    fn a_float_that_overflows_is_refused() {
+        let f = Field { factor: 1e-3, min: -1e38, max: 1e38, ..field(0, 32, false, Kind::Float32) };
+        assert!(f.to_raw(1e37).is_err());
+        assert!(f.to_raw(1e34).is_ok());
     }
 
     #[test]
@@ -282,6 +340,25 @@ mod tests {
             }
             if length <= 53 {
                 prop_assert_eq!(f.to_raw(f.physical(raw)).unwrap(), raw);
+            }
+        }
+
+        #[test]
+        fn what_can_be_written_can_be_read(
+            value: f64,
+            near in -130.0..130.0_f64,
+            length in 1_u16..=64,
+            signed: bool,
+            factor in prop_oneof![Just(1.0), Just(2.0), Just(0.1), Just(-0.5)],
+        ) {
+            let kind = if signed { Kind::Signed } else { Kind::Unsigned };
+            let f = Field { factor, ..field(0, length, false, kind) };
+            let (low, high) = f.physical_range();
+            let f = Field { min: low.max(-100.0), max: high.min(100.0), ..f };
+            for value in [value, near, near.round() + 0.5] {
+                if let Ok(raw) = f.to_raw(value) {
+                    prop_assert!(f.read(&raw.to_le_bytes()).is_ok(), "{value} as {raw}");
+                }
             }
         }
 

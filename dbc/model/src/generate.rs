@@ -2,6 +2,7 @@
 
 use core::fmt::Write;
 
+use crate::names::Names;
 use crate::{Database, Field, Kind, Message, Signal};
 
 /// Why no source was made.
@@ -30,6 +31,7 @@ pub fn generate(database: &Database) -> Result<String, GenerateError> {
         let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
         return Err(GenerateError::Problems(lines.join("\n")));
     }
+    check_names(database)?;
     let mut out = String::new();
     for message in database.messages() {
         if let Some(signal) = message.signals.iter().find(|s| s.present.is_some()) {
@@ -40,6 +42,37 @@ pub fn generate(database: &Database) -> Result<String, GenerateError> {
     }
     write_table(&mut out, database);
     Ok(out)
+}
+
+/// Refuses what would not compile, while the database can still be named.
+fn check_names(database: &Database) -> Result<(), GenerateError> {
+    let mut types = Names::of("messages".to_owned());
+    for message in database.messages() {
+        types.take(type_name(&message.name))?;
+        let mut fields = Names::of(message.name.clone());
+        for signal in &message.signals {
+            fields.take(field_name(signal))?;
+            let Type::Named(name) = Type::of(message, signal) else { continue };
+            types.take(name)?;
+            let place = format!("{}.{}", message.name, signal.name);
+            if signal.values.iter().any(|(raw, _)| !(0..=255).contains(raw)) {
+                return Err(GenerateError::Unsupported {
+                    place,
+                    what: "a named value outside 0 to 255",
+                });
+            }
+            let mut variants = Names::of(place);
+            for (_, text) in &signal.values {
+                variants.take(variant_name(text))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The text on one line, as a doc comment needs it.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// The Rust type of a signal.
@@ -90,7 +123,7 @@ fn write_message(out: &mut String, message: &Message) {
         .iter()
         .all(|s| matches!(Type::of(message, s), Type::Physical | Type::Integer(_) | Type::Flag));
     let default = if all_plain { ", Default" } else { "" };
-    push(out, &format!("/// {} Sent by {}.", message.comment, message.sender));
+    push(out, &format!("/// {} Sent by {}.", one_line(&message.comment), message.sender));
     push(out, &format!("#[derive(Clone, Copy, Debug, PartialEq{default})]"));
     push(out, &format!("pub struct {name} {{"));
     for signal in &fields {
@@ -213,11 +246,11 @@ fn write_decode(out: &mut String, message: &Message, fields: &[&Signal]) {
 }
 
 fn write_enum(out: &mut String, name: &str, signal: &Signal) {
-    push(out, &format!("/// {}", signal.comment));
+    push(out, &format!("/// {}", one_line(&signal.comment)));
     push(out, "#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]");
     push(out, &format!("pub enum {name} {{"));
     for (i, (raw, text)) in signal.values.iter().enumerate() {
-        push(out, &format!("    /// {raw}: {text}."));
+        push(out, &format!("    /// {raw}: {}.", one_line(text)));
         if i == 0 {
             push(out, "    #[default]");
         }
@@ -242,7 +275,7 @@ fn write_enum(out: &mut String, name: &str, signal: &Signal) {
     push(out, "    pub const fn name(self) -> &'static str {");
     push(out, "        match self {");
     for (_, text) in &signal.values {
-        push(out, &format!("            Self::{} => \"{text}\",", variant_name(text)));
+        push(out, &format!("            Self::{} => {text:?},", variant_name(text)));
     }
     push(out, "        }\n    }\n}\n");
 }
@@ -273,12 +306,15 @@ fn is_crc(message: &Message, signal: &Signal) -> bool {
 
 fn field_doc(signal: &Signal) -> String {
     if signal.is_plain_integer() {
-        return signal.comment.clone();
+        return one_line(&signal.comment);
     }
     let (field, unit) = (&signal.field, &signal.unit);
     format!(
         "{} {} to {} {unit}, {} {unit} on the wire.",
-        signal.comment, field.min, field.max, field.factor
+        one_line(&signal.comment),
+        field.min,
+        field.max,
+        field.factor
     )
 }
 

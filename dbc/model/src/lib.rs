@@ -9,6 +9,8 @@ mod database;
 mod field;
 mod generate;
 mod message;
+mod names;
+mod stray;
 
 pub use check::Problem;
 pub use database::{Database, ReadError};

@@ -78,6 +78,73 @@ fn each_fault_is_named_with_its_remedy() {
     }
 }
 
+/// What becomes of a database of one message `M` with these signals and statements.
+fn outcome(signals: &str, statements: &str) -> Result<String, String> {
+    let text = format!(
+        "VERSION \"\"\n\nNS_ :\n\nBS_:\n\nBU_: A B\n\nBO_ 5 M: 8 A\n{signals}\n\n\
+         BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;\nBA_DEF_ BO_ \"E2eDataId\" INT 0 65535;\n\
+         BA_DEF_DEF_ \"GenMsgCycleTime\" 10;\nBA_DEF_DEF_ \"E2eDataId\" 0;\n{statements}\n"
+    );
+    let database = Database::parse(&text, "m.dbc").map_err(|error| error.to_string())?;
+    generate(&database).map_err(|error| error.to_string())
+}
+
+#[test]
+fn what_would_pass_in_silence_is_refused() {
+    let x = " SG_ X : 0|8@1+ (1,0) [0|255] \"\" B";
+    let crc = format!("{x}\n SG_ Crc : 56|8@1+ (1,0) [0|255] \"\" B");
+    let float = " SG_ X : 0|32@1- (1,0) [-9|9] \"V\" B";
+    let ring = " SG_ P m0M : 0|8@1+ (1,0) [0|255] \"\" B\n SG_ Q m0M : 8|8@1+ (1,0) [0|255] \"\" B";
+    let nested = " SG_ P M : 0|8@1+ (1,0) [0|255] \"\" B\n SG_ Q m1M : 8|8@1+ (1,0) [0|255] \"\" B\n \
+                  SG_ R m2 : 16|8@1+ (1,0) [0|255] \"\" B";
+    let cases = [
+        (float, "SIG_VALTYPE_ 5 Xx : 1;", "SIG_VALTYPE_ 5 Xx: is about nothing declared"),
+        (x, "VAL_ 6 X 0 \"off\" ;", "VAL_ 6 X: is about nothing declared"),
+        (x, "CM_ BO_ 6 \"gone\";", "CM_ 6: is about nothing declared"),
+        (x, "VAL_ 5 X 0 \"off\" 256 \"far\" ;", "M.X: names 256 \"far\", which is out of"),
+        (x, "VAL_ 5 X 0 \"off\" 0 \"on\" ;", "M.X: names 0 twice"),
+        (x, "VAL_ 5 X 0 \"2D fix\" ;", "M.X: \"2DFix\": cannot be a name in Rust"),
+        (x, "VAL_ 5 X 0 \"safe stop\" 1 \"safe-Stop\" ;", "M.X: \"SafeStop\": comes twice"),
+        (&crc, "", "M: has a CRC that nothing checks"),
+        (&crc, "BA_ \"E2eDataId\" BO_ 5 65536;", "M: has a CRC that nothing checks"),
+        (ring, "SG_MUL_VAL_ 5 P Q 0-0;\nSG_MUL_VAL_ 5 Q P 0-0;", "M.P: is multiplexed by itself"),
+        (nested, "", "m.dbc:9: M.Q has several switches to go by"),
+        (&x.replace("SG_ X", "SG_ Type"), "", "M: \"type\": cannot be a name in Rust"),
+        (&x.replace("\"\"", "\"l/min\""), "", "M: \"x_l/min\": cannot be a name in Rust"),
+        (&x.replace("0|8", "-3|8"), "", "m.dbc:10: Invalid Uint value: '-3'"),
+    ];
+    for (signals, statements, expected) in cases {
+        let error = outcome(signals, statements).expect_err(expected);
+        assert!(error.lines().any(|line| line.starts_with(expected)), "{expected}: {error}");
+    }
+}
+
+#[test]
+fn a_named_value_that_no_byte_holds_is_refused() {
+    let error =
+        outcome(" SG_ X : 0|16@1+ (1,0) [0|999] \"\" B", "VAL_ 5 X 0 \"off\" 300 \"far\" ;");
+    assert!(error.unwrap_err().starts_with("M.X: a named value outside 0 to 255"));
+}
+
+#[test]
+fn an_identifier_or_length_without_a_frame_is_refused() {
+    let plain = |from: &str, to: &str| Database::parse(&GOOD.replace(from, to), "bad.dbc");
+    for id in ["4096", "70000"] {
+        let error = plain("2147483905", id).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("bad.dbc:9: Target: {id} has more than 11")), "{error}");
+    }
+    let long = plain("Target: 8 A", "Target: 64 A").unwrap();
+    let error = generate(&long).unwrap_err().to_string();
+    assert!(error.contains("Target: has 64 bytes; a classic CAN frame has up to 8"), "{error}");
+}
+
+#[test]
+fn a_comment_of_several_lines_becomes_one() {
+    let x = " SG_ X : 0|8@1+ (1,0) [0|255] \"\" B";
+    let source = outcome(x, "CM_ SG_ 5 X \"one\ntwo\";").unwrap();
+    assert!(source.contains("/// one two"), "{source}");
+}
+
 #[test]
 fn two_messages_may_not_share_an_identifier() {
     let twice = GOOD.replacen(

@@ -1,4 +1,4 @@
-//! Keeping the front frame level with the arms, gently.
+//! Keeping the front frame level with the arms, gently, and every wheel on the ground.
 
 use xt28_machine::{Machine, PerWheel, Side};
 
@@ -16,6 +16,14 @@ const DEAD_BAND_RAD: f64 = 0.25 * core::f64::consts::PI / 180.0;
 const CORRECTION_MAX_RAD: f64 = 0.12;
 /// Speed of the mean stroke towards its set point, m/s (assumed).
 const HEIGHT_RATE_M_S: f64 = 0.02;
+/// A cylinder with less than this on it has a wheel that hardly touches, N (assumed).
+const LOAD_LEAST_N: f64 = 5_000.0;
+/// Speed at which a wheel that hardly touches reaches for the ground, m/s (assumed).
+const REACH_RATE_M_S: f64 = 0.008;
+/// Speed at which a wheel that carries again comes back, m/s (assumed).
+const RETURN_RATE_M_S: f64 = 0.001;
+/// Furthest reach, m (assumed).
+const REACH_MAX_M: f64 = 0.06;
 /// Smallest change of a target, m: one bit of the command frame, so that rounding never chatters.
 const STEP_M: f64 = 0.002;
 
@@ -28,6 +36,8 @@ pub(super) struct Levelling {
     height_per_stroke: f64,
     stroke_max_m: f64,
     correction: Attitude,
+    /// What each wheel reaches below the plane of the six.
+    reach_m: PerWheel<f64>,
     mean_m: Option<f64>,
     targets_m: Option<PerWheel<f64>>,
 }
@@ -45,6 +55,7 @@ impl Levelling {
             height_per_stroke: 1.0 / machine.linkage().at_stroke(MEAN_STROKE_M).force_ratio,
             stroke_max_m: machine.hydraulics.manual_stroke_max_m,
             correction: Attitude::default(),
+            reach_m: PerWheel::splat(0.0),
             mean_m: None,
             targets_m: None,
         }
@@ -63,28 +74,44 @@ impl Levelling {
             roll_rad: integrate(before.roll_rad, roll_rad, dt_s),
             pitch_rad: integrate(before.pitch_rad, pitch_rad, dt_s),
         };
-        let wanted = self.strokes(mean);
-        if wanted.0.iter().any(|s| !(0.0..=self.stroke_max_m).contains(s)) {
-            // An arm is at its end: more integral would only have to be unwound later.
-            self.correction = before;
+        let outside = |s: &f64| !(0.0..=self.stroke_max_m).contains(s);
+        if self.plane(mean).0.iter().any(outside) {
+            // An arm is at its end: what more integral there is must not grow, only unwind.
+            self.correction = Attitude {
+                roll_rad: smaller(before.roll_rad, self.correction.roll_rad),
+                pitch_rad: smaller(before.pitch_rad, self.correction.pitch_rad),
+            };
         }
-        let previous = self.targets_m.unwrap_or(observation.stroke_m);
-        let targets = PerWheel::from_fn(|wheel| {
-            let wanted = wanted[wheel].clamp(0.0, self.stroke_max_m);
-            let kept = previous[wheel].clamp(0.0, self.stroke_max_m);
-            if (wanted - kept).abs() < STEP_M { kept } else { wanted }
+        // A wheel in the air spins away what its circuit should push with.
+        self.reach_m = PerWheel::from_fn(|wheel| {
+            let light = observation.load_n[wheel] < LOAD_LEAST_N;
+            let rate_m_s = if light { REACH_RATE_M_S } else { -RETURN_RATE_M_S };
+            (self.reach_m[wheel] + rate_m_s * dt_s).clamp(0.0, REACH_MAX_M)
         });
+        let plane = self.plane(mean);
+        let wanted = PerWheel::from_fn(|wheel| plane[wheel] + self.reach_m[wheel]);
+        let previous = self.targets_m.unwrap_or(observation.stroke_m);
+        let within = |strokes: PerWheel<f64>| strokes.map(|s| s.clamp(0.0, self.stroke_max_m));
+        let (wanted, kept) = (within(wanted), within(previous));
+        // All six move or none: six wheels on a stiff machine share a plane, and one that is left
+        // some millimetres behind hangs in the air.
+        let moved = wanted.iter().any(|(wheel, s)| (s - kept[wheel]).abs() >= STEP_M);
+        let targets = if moved { wanted } else { kept };
         self.targets_m = Some(targets);
         targets
     }
 
     /// Right side high: the right arms come in, the left ones out. Nose high: the front arms in.
-    fn strokes(&self, mean_m: f64) -> PerWheel<f64> {
+    fn plane(&self, mean_m: f64) -> PerWheel<f64> {
         let Attitude { roll_rad, pitch_rad } = self.correction;
         self.place_m.map(|[ahead_m, left_m]| {
             mean_m + (left_m * roll_rad - ahead_m * pitch_rad) / self.height_per_stroke
         })
     }
+}
+
+fn smaller(a: f64, b: f64) -> f64 {
+    if a.abs() < b.abs() { a } else { b }
 }
 
 fn integrate(correction_rad: f64, error_rad: f64, dt_s: f64) -> f64 {

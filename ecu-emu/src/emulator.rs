@@ -27,6 +27,9 @@ pub struct EmulatorConfig {
     pub terrain: Terrain,
     /// Strokes at the start, m.
     pub stroke_m: PerWheel<f64>,
+    /// Loads of the cylinders at the start, N, where they are known. Six wheels carry a stiff machine
+    /// in many ways at all but the same strokes; without loads it is as the springs would have it.
+    pub load_n: Option<PerWheel<f64>>,
     /// Seed of the sensor noise; without one the sensors are exact.
     pub seed: Option<u64>,
     /// Where the receiver believes the start to be.
@@ -38,7 +41,7 @@ impl EmulatorConfig {
     #[must_use]
     pub const fn new(machine: Machine, terrain: Terrain, seed: Option<u64>) -> Self {
         let stroke_m = PerWheel::splat(0.17);
-        Self { machine, terrain, stroke_m, seed, origin: Geodetic::BENCH_ORIGIN }
+        Self { machine, terrain, stroke_m, load_n: None, seed, origin: Geodetic::BENCH_ORIGIN }
     }
 }
 
@@ -64,7 +67,7 @@ impl Emulator {
         let mut plant = Vehicle::new(machine, &config.terrain, config.stroke_m);
         let engine = Engine::new(machine.drive.engine_speed_rpm);
         for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
-            let setting = wiring::setting(&config.stroke_m, plant.state(), engine.speed_rpm());
+            let setting = wiring::setting(config, plant.state(), engine.speed_rpm());
             plant.step(&setting);
         }
         Self {

@@ -5,6 +5,8 @@ use xt28_ecus::{ArmOutputs, ArmPins, DriveOutputs, DrivePins, pins};
 use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::{Actuation, ImuSample, VehicleState};
 
+use crate::EmulatorConfig;
+
 /// Battery of the machine, mV.
 const SUPPLY_MV: f64 = 24_000.0;
 
@@ -54,9 +56,15 @@ pub(crate) fn actuation(arm: &ArmOutputs, drive: &DriveOutputs, engine_rpm: f64)
 
 /// Opening per stroke error while the arms are set by hand, 1/m.
 const SETTING_GAIN_M: f64 = 10.0;
+/// Opening per load error, 1/N: 1 kN counts as 5 mm.
+const SETTING_GAIN_N: f64 = 5.0e-5;
 
-/// A machine whose arms somebody sets to `stroke_m` before its ECUs run, wheels free to roll.
-pub(crate) fn setting(stroke_m: &PerWheel<f64>, s: &VehicleState, engine_rpm: f64) -> Actuation {
-    let opening = |w: Wheel| (SETTING_GAIN_M * (stroke_m[w] - s.stroke_m[w])).clamp(-0.3, 0.3);
+/// A machine whose arms somebody sets before its ECUs run, wheels free to roll.
+pub(crate) fn setting(config: &EmulatorConfig, s: &VehicleState, engine_rpm: f64) -> Actuation {
+    let opening = |w: Wheel| {
+        let load = config.load_n.map_or(0.0, |load_n| load_n[w] - s.cylinder_force_n[w]);
+        let stroke = config.stroke_m[w] - s.stroke_m[w];
+        (SETTING_GAIN_M * stroke + SETTING_GAIN_N * load).clamp(-0.3, 0.3)
+    };
     Actuation { arm_opening: PerWheel::from_fn(opening), ..Actuation::idle(engine_rpm) }
 }

@@ -159,7 +159,7 @@ impl Default for Vehicle {
             circuit_gain_nms: 10_000.0,
             mean_integral_nm: 145_000.0,
             joint_stiffness_nm: 4.0e6,
-            joint_damping_nms: 3.4e5,
+            joint_damping_nms: 2.8e5,
         }
     }
 }

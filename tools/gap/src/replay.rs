@@ -8,8 +8,9 @@
 //! **Resampling.** Values are compared at the log's instants; ours are held from tick to tick, as
 //! a bus holds them ([`Series::at`]).
 //!
-//! **Start.** The machine starts at the strokes first measured and stands for 5 s at the log's
-//! first commands before the log begins, heading east from the origin.
+//! **Start.** The machine is set to the strokes and cylinder loads first measured and stands for
+//! 5 s at the log's first commands before the log begins, heading east from the origin. Loads,
+//! because on six wheels a millimetre of stroke is 2 kN of load: strokes alone leave them open.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -45,12 +46,19 @@ impl Replay {
     /// [`GapError::Command`] for a command that our bus cannot say.
     pub fn run(log: &FieldLog, machine: &Machine, terrain: &Terrain) -> Result<Self, GapError> {
         let commands = commands(log, machine.drive.engine_speed_rpm)?;
+        let first = |channel| log.series(channel).and_then(|s| s.iter().next()).map(|(_, v)| v);
+        // Strokes are logged in whole millimetres, cut off: the middle of the step is meant.
         let stroke_m = PerWheel::from_fn(|wheel| {
-            let first = log.series(Channel::Stroke(wheel)).and_then(|s| s.iter().next());
-            first.map_or(0.0, |(_, stroke_m)| stroke_m)
+            first(Channel::Stroke(wheel)).map_or(0.0, |stroke_m| stroke_m + 0.0005)
         });
+        let loads = PerWheel::from_fn(|wheel| first(Channel::CylinderLoad(wheel)));
         let config = EmulatorConfig {
             stroke_m,
+            load_n: loads
+                .0
+                .iter()
+                .all(Option::is_some)
+                .then(|| loads.map(Option::unwrap_or_default)),
             ..EmulatorConfig::new(machine.clone(), terrain.clone(), None)
         };
         let mut bench = Bench::new(&config, log.name())?;

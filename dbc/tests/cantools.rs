@@ -20,8 +20,8 @@ fn python_with_cantools() -> Option<&'static str> {
     if found {
         return Some("python3");
     }
-    assert!(std::env::var_os("CI").is_none(), "CI needs python3 with cantools (python3-cantools)");
-    eprintln!("SKIPPED: python3 has no cantools; install python3-cantools");
+    assert!(std::env::var_os("CI").is_none(), "CI needs python3 with cantools (pip install cantools)");
+    eprintln!("SKIPPED: python3 has no cantools; pip install cantools");
     None
 }
 

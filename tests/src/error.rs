@@ -70,5 +70,5 @@ impl ScenarioError {
 }
 
 fn suggest(nearest: &Option<&'static str>) -> String {
-    nearest.map_or_else(String::new, |name| format!(": did you mean `{name}`?"))
+    nearest.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
 }

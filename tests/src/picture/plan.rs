@@ -45,7 +45,7 @@ const AIR_M: f64 = 0.8;
 /// Drawn width of a tyre, m.
 const TYRE_M: f64 = 0.6;
 /// Where the time is written, m to the right of the machine's centre line.
-const LABEL_M: f64 = 1.85;
+const LABEL_M: f64 = 2.15;
 /// Room that a target's arrow and name take, m.
 const TARGET_M: f64 = 3.2;
 /// Ends and half width of the drawn frames, m from the front axle of the straight machine.
@@ -56,7 +56,7 @@ impl<'a> Plan<'a> {
     pub(super) fn new(picture: &'a Picture<'a>, width: f64) -> Self {
         let footprints = footprints(picture);
         let path_m = path(picture);
-        let corners = footprints.iter().flat_map(|f| f.outline(picture.machine));
+        let corners = footprints.iter().flat_map(Footprint::outline);
         let target = target(picture).map(|(pose, _)| placed(&pose, [TARGET_M, 0.0]));
         let (mut low_m, mut high_m) = ([-8.0, -2.2], [3.0, 2.2]);
         for point in path_m.iter().copied().chain(corners).chain(target) {
@@ -172,9 +172,9 @@ impl<'a> Plan<'a> {
 }
 
 impl Footprint {
-    /// Corners of the three hulls, m.
-    fn outline(&self, machine: &Machine) -> impl Iterator<Item = [f64; 2]> {
-        let half_m = machine.wheels.track_m / 2.0 + TYRE_M;
+    /// Corners of the room that the three frames and the time beside them take, m.
+    fn outline(&self) -> impl Iterator<Item = [f64; 2]> {
+        let half_m = LABEL_M + 0.35;
         let hulls = self.frames.into_iter().zip(HULLS);
         hulls.flat_map(move |(frame, ([back, front], _))| {
             [[back, -half_m], [front, -half_m], [front, half_m], [back, half_m]]

@@ -41,11 +41,11 @@ pub(crate) struct Replay {
 
 impl Replay {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let mapping = self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
+        let mapping =
+            self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
         let decoder = Decoder::load(&self.dbc, &mapping)?;
         let log = FieldLog::load(&self.log, &decoder, self.accept_cut)?;
-        let machine =
-            self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
+        let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let replay = Run::run(&log, &machine, &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {

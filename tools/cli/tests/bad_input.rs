@@ -99,3 +99,27 @@ fn an_unknown_option_is_usage() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("--seed"));
 }
+
+/// A DBC of the field, kept by the crate that reads field logs.
+const FIELD_DBC: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../gap/tests/field.dbc");
+
+#[test]
+fn a_log_cut_in_the_middle_is_named_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "(1.500000) can0 0CFF4027#5555555555551299\n(1.510000) can0 0CFF40";
+    let log = file(&folder, "cut.log", text);
+    let talk = refusal(&["replay", &log, "--dbc", FIELD_DBC]);
+    assert!(talk.contains("cut.log:2: log is cut"), "{talk}");
+}
+
+#[test]
+fn a_dbc_without_a_frame_is_named_with_the_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(FIELD_DBC).unwrap();
+    assert!(text.contains("PosFront"));
+    let lacking = text.replace("PosFront", "SomethingElse");
+    let dbc = file(&folder, "lacking.dbc", &lacking);
+    let log = file(&folder, "a.log", "(1.500000) can0 0CFF4027#5555555555551299\n");
+    let talk = refusal(&["replay", &log, "--dbc", &dbc]);
+    assert!(talk.contains("lacking.dbc: no message `PosFront`"), "{talk}");
+}

@@ -17,7 +17,7 @@ use tally::Tally;
 /// Run everything that must hold, and end with one line `N passed, N failed`
 ///
 /// All stages run, whatever came of those before: one run shows all that is wrong. A stage that
-/// fails without naming a test counts as one failed.
+/// fails without naming a test counts as one failed. What failed is listed again at the end.
 #[derive(Args)]
 pub(crate) struct Test {
     /// Leave out what needs a real vcan0; refused where CI is set
@@ -79,11 +79,13 @@ impl Test {
             let name = stage.name();
             println!("\n=== {name}");
             let begun = Instant::now();
-            let tally = self.stage(*stage, workspace);
+            let report = self.stage(*stage, workspace);
             let took = begun.elapsed().as_secs_f64();
-            let verdict = if tally.failed > 0 { "FAILED" } else { "ok" };
-            lines.push(format!("{name:<8} {verdict:<6} {took:>7.1} s   {tally}"));
-            sum += tally;
+            let verdict = if report.tally.failed > 0 { "FAILED" } else { "ok" };
+            let line = format!("{name:<8} {verdict:<6} {took:>7.1} s   {}", report.counts());
+            lines.push(line.trim_end().to_owned());
+            lines.extend(report.failures.iter().map(|test| format!("         {test}")));
+            sum += report.tally;
         }
         println!("\n=== summary");
         for line in lines {
@@ -93,7 +95,7 @@ impl Test {
         Ok(u8::from(sum.failed > 0))
     }
 
-    fn stage(&self, stage: Stage, workspace: &Workspace) -> Tally {
+    fn stage(&self, stage: Stage, workspace: &Workspace) -> Report {
         let cargo = |arguments: &[&str]| {
             let mut command = Command::new(env!("CARGO"));
             command.current_dir(&workspace.root).args(arguments);
@@ -124,36 +126,62 @@ impl Test {
             ])),
             Stage::Vcan if self.no_vcan => {
                 println!("LEFT OUT by --no-vcan: nothing here was tried on a real vcan0");
-                Tally { skipped: vcan_scenarios::COUNT, ..Tally::default() }
+                Tally { skipped: vcan_scenarios::COUNT, ..Tally::default() }.into()
             }
             Stage::Vcan => vcan_scenarios::run_all(workspace, &self.cache),
         }
     }
 }
 
-/// A stage that names no tests: nothing is counted unless it fails.
-fn plain(command: &mut Command) -> Tally {
-    let failed = !command.status().is_ok_and(|status| status.success());
-    Tally { failed: u32::from(failed), ..Tally::default() }
+/// What came of a stage.
+#[derive(Default, PartialEq, Debug)]
+pub(crate) struct Report {
+    pub(crate) tally: Tally,
+    /// Names of what failed, where it has names.
+    pub(crate) failures: Vec<String>,
 }
 
-fn tidy_stage(workspace: &Workspace) -> Tally {
-    let found = match tidy::check(workspace) {
-        Ok(found) => found,
+impl Report {
+    /// The counts, or nothing where nothing was counted.
+    fn counts(&self) -> String {
+        if self.tally == Tally::default() { String::new() } else { self.tally.to_string() }
+    }
+
+    /// A check or stage that names no tests: counted only if it failed.
+    fn unnamed(passed: bool) -> Self {
+        Tally { failed: u32::from(!passed), ..Tally::default() }.into()
+    }
+}
+
+impl From<Tally> for Report {
+    fn from(tally: Tally) -> Self {
+        Self { tally, failures: Vec::new() }
+    }
+}
+
+/// A stage that names no tests.
+fn plain(command: &mut Command) -> Report {
+    Report::unnamed(command.status().is_ok_and(|status| status.success()))
+}
+
+fn tidy_stage(workspace: &Workspace) -> Report {
+    match tidy::check(workspace) {
+        Ok(found) => {
+            for finding in &found {
+                println!("{finding}");
+            }
+            Report::unnamed(found.is_empty())
+        }
         Err(error) => {
             println!("{error}");
-            return Tally::one(false);
+            Report::unnamed(false)
         }
-    };
-    for finding in &found {
-        println!("{finding}");
     }
-    Tally { failed: u32::from(!found.is_empty()), ..Tally::default() }
 }
 
 /// Runs a command whose tests tell their results, passing its output on as it comes.
-pub(crate) fn harness(command: &mut Command) -> Tally {
-    let mut sum = Tally::default();
+pub(crate) fn harness(command: &mut Command) -> Report {
+    let mut report = Report::default();
     let mut read_and_wait = || -> Outcome<bool> {
         let mut child = command.stdout(Stdio::piped()).spawn()?;
         let output = child.stdout.take().ok_or("no output to read")?;
@@ -161,7 +189,8 @@ pub(crate) fn harness(command: &mut Command) -> Tally {
             let line = line?;
             let line = String::from_utf8_lossy(&line);
             println!("{line}");
-            sum += Tally::of_line(&line).unwrap_or_default();
+            report.tally += Tally::of_line(&line).unwrap_or_default();
+            report.failures.extend(failed_test(&line).map(str::to_owned));
         }
         Ok(child.wait()?.success())
     };
@@ -170,32 +199,45 @@ pub(crate) fn harness(command: &mut Command) -> Tally {
         false
     });
     // It did not compile, or a test brought its whole program down.
-    if !success && sum.failed == 0 {
-        sum.failed = 1;
+    if !success && report.tally.failed == 0 {
+        report.tally.failed = 1;
     }
-    sum
+    report
+}
+
+/// The name in a harness's line `test NAME ... FAILED`.
+fn failed_test(line: &str) -> Option<&str> {
+    line.strip_prefix("test ")?.strip_suffix(" ... FAILED")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn shell(script: &str) -> Tally {
+    fn shell(script: &str) -> Report {
         harness(Command::new("sh").args(["-c", script]))
     }
 
     #[test]
     fn result_lines_add_up() {
         let line = "echo 'test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured'";
-        assert_eq!(shell(&format!("{line}; {line}")), Tally { passed: 4, failed: 0, skipped: 2 });
+        let sum = Tally { passed: 4, failed: 0, skipped: 2 };
+        assert_eq!(shell(&format!("{line}; {line}")), sum.into());
     }
 
     #[test]
     fn a_failure_without_a_result_line_counts() {
-        assert_eq!(shell("exit 101"), Tally::one(false));
-        let line = "echo 'test result: FAILED. 2 passed; 3 failed; 0 ignored'";
-        assert_eq!(shell(&format!("{line}; exit 101")).failed, 3);
-        assert_eq!(plain(&mut Command::new("false")), Tally::one(false));
-        assert_eq!(plain(&mut Command::new("true")), Tally::default());
+        assert_eq!(shell("exit 101"), Tally::one(false).into());
+        assert_eq!(plain(&mut Command::new("false")), Tally::one(false).into());
+        assert_eq!(plain(&mut Command::new("true")), Report::default());
+    }
+
+    #[test]
+    fn what_failed_is_counted_and_named() {
+        let line = "echo 'test a::b ... FAILED'; echo 'test a::c ... ok'";
+        let result = "echo 'test result: FAILED. 1 passed; 1 failed; 0 ignored'; exit 101";
+        let report = shell(&format!("{line}; {result}"));
+        assert_eq!(report.tally, Tally { passed: 1, failed: 1, skipped: 0 });
+        assert_eq!(report.failures, ["a::b"]);
     }
 }

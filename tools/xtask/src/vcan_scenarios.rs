@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 use cargo_metadata::{Artifact, Message};
 use clap::Args;
 
-use crate::test::harness;
 use crate::test::tally::Tally;
+use crate::test::{Report, harness};
 use crate::vcan::Cache;
 use crate::workspace::{Outcome, Workspace};
 
@@ -29,7 +29,7 @@ impl VcanScenarios {
     /// # Errors
     /// None yet: what goes wrong is a failed check.
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
-        let tally = run_all(workspace, &self.cache);
+        let tally = run_all(workspace, &self.cache).tally;
         println!("{tally}");
         Ok(u8::from(tally.failed > 0))
     }
@@ -70,25 +70,33 @@ pub(crate) const COUNT: u32 = CHECKS.len() as u32 + 1;
 const TIMEOUT_S: &str = "600";
 
 /// Builds what is needed and runs every check.
-pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Tally {
+pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Report {
     let bench = match Bench::prepare(workspace, cache) {
         Ok(bench) => bench,
         Err(error) => {
             println!("{error}");
-            return Tally { failed: COUNT, ..Tally::default() };
+            return Tally { failed: COUNT, ..Tally::default() }.into();
         }
     };
-    let mut sum = Tally::default();
+    let mut report = Report::default();
     for check in CHECKS {
-        let failure = bench.check(check).err();
-        let verdict = failure.map_or_else(|| "ok".to_owned(), |why| format!("FAILED: {why}"));
-        sum += Tally::one(verdict == "ok");
-        println!("vcan {} ... {verdict}", check.log.trim_end_matches(".log"));
+        let name = format!("vcan {}", check.log.trim_end_matches(".log"));
+        let outcome = bench.check(check);
+        report.tally += Tally::one(outcome.is_ok());
+        match outcome {
+            Ok(()) => println!("{name} ... ok"),
+            Err(why) => {
+                println!("{name} ... FAILED: {why}");
+                report.failures.push(name);
+            }
+        }
     }
     let mut socket_tests = bench.vcan(&["--"]);
     socket_tests.arg(&bench.socket_tests).arg("--nocapture").env("XT28_VCAN", "vcan0");
-    sum += harness(&mut socket_tests);
-    sum
+    let socket_tests = harness(&mut socket_tests);
+    report.tally += socket_tests.tally;
+    report.failures.extend(socket_tests.failures);
+    report
 }
 
 /// What the checks run with: programs built outside, since a guest is slow at compiling.

@@ -94,27 +94,16 @@ mod tests {
 
     #[test]
     fn each_gap_in_the_fence_is_found() {
-        let mut whole = String::new();
-        for (list, items) in FENCE {
-            let entries = items.map_to_toml();
-            whole.push_str(&format!("{list} = [{entries}]\n"));
-        }
+        let entry = |item: &&str| format!("{{ path = \"{item}\" }}");
+        let list = |(name, items): &(&str, &[&str])| {
+            let entries: Vec<String> = items.iter().map(entry).collect();
+            format!("{name} = [{}]\n", entries.join(", "))
+        };
+        let whole: String = FENCE.iter().map(list).collect();
         assert_eq!(check_clippy("clippy.toml", &whole), []);
         for item in FENCE.iter().flat_map(|(_, items)| *items) {
             let gap = whole.replace(&format!("\"{item}\""), "\"other\"");
             assert_eq!(check_clippy("clippy.toml", &gap).len(), 1, "{item}");
-        }
-    }
-
-    trait MapToToml {
-        fn map_to_toml(&self) -> String;
-    }
-
-    impl MapToToml for &[&str] {
-        fn map_to_toml(&self) -> String {
-            let entries: Vec<_> =
-                self.iter().map(|path| format!("{{ path = \"{path}\" }}")).collect();
-            entries.join(", ")
         }
     }
 }

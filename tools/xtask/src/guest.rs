@@ -23,6 +23,15 @@ pub(crate) struct Guest {
 }
 
 impl Guest {
+    /// Why no guest can be had here without somebody's help, and what they would have to do.
+    pub(crate) fn out_of_reach(cache: &Path) -> Option<String> {
+        if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+            return Some("a guest runs on Linux on x86-64 only".to_owned());
+        }
+        packages::out_of_reach(packages::RUN)
+            .or_else(|| packages::out_of_reach(kernel::needs(cache)))
+    }
+
     /// Finds kernel and shim in the folder `cache`, or builds them into it.
     ///
     /// # Errors

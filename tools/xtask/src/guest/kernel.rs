@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::Instant;
 
-use super::packages::{self, BUILD, SOURCE, SOURCE_PACKAGE};
+use super::packages::{self, BUILD, Need, SOURCE, SOURCE_PACKAGE};
 use crate::workspace::Outcome;
 
 const CONFIG: &str = include_str!("../../guest/kernel.config");
@@ -20,25 +20,34 @@ const CONFIG: &str = include_str!("../../guest/kernel.config");
 /// # Errors
 /// When packages are missing and cannot be installed, or the build fails; names the build's log.
 pub(super) fn find_or_build(cache: &Path) -> Outcome<PathBuf> {
-    let ending = format!("-{:016x}", fingerprint(CONFIG.as_bytes()));
-    let named = |version: &str| cache.join(format!("linux-{version}{ending}"));
-    let version = match packages::version(SOURCE_PACKAGE) {
-        Some(version) => version,
-        None => {
-            if let Some(kept) = any_kept(cache, &ending) {
-                return Ok(kept);
-            }
-            packages::require(BUILD)?;
-            packages::version(SOURCE_PACKAGE).ok_or("dpkg does not know linux-source-6.1")?
-        }
-    };
-    let kernel = named(&version);
-    if !kernel.is_file() {
-        packages::require(BUILD)?;
-        fs::create_dir_all(cache)?;
-        build(cache, &kernel)?;
+    if let Some(kept) = kept(cache) {
+        return Ok(kept);
     }
+    packages::require(BUILD)?;
+    let version = packages::version(SOURCE_PACKAGE).ok_or("dpkg does not know its source")?;
+    let kernel = cache.join(format!("linux-{version}{}", ending()));
+    fs::create_dir_all(cache)?;
+    build(cache, &kernel)?;
     Ok(kernel)
+}
+
+/// What building a kernel would need; nothing if one is kept.
+pub(super) fn needs(cache: &Path) -> &'static [Need] {
+    if kept(cache).is_some() { &[] } else { BUILD }
+}
+
+/// The kept kernel that is good, if there is one.
+fn kept(cache: &Path) -> Option<PathBuf> {
+    match packages::version(SOURCE_PACKAGE) {
+        Some(version) => Some(cache.join(format!("linux-{version}{}", ending())))
+            .filter(|kernel| kernel.is_file()),
+        None => any_kept(cache, &ending()),
+    }
+}
+
+/// The end of a kernel's name: its configuration.
+fn ending() -> String {
+    format!("-{:016x}", fingerprint(CONFIG.as_bytes()))
 }
 
 /// A kernel of any version with this configuration; the last by name if there are several.

@@ -1,5 +1,6 @@
 //! The Debian packages that the guest is built from and run with.
 
+use std::path::Path;
 use std::process::Command;
 
 use crate::workspace::Outcome;
@@ -38,30 +39,43 @@ pub(super) const BUILD: &[Need] = &[
     need("xz-utils", "/usr/bin/xz"),
 ];
 
+fn missing(needs: &[Need]) -> Vec<&'static str> {
+    let absent = |need: &&Need| !Path::new(need.file).exists();
+    needs.iter().filter(absent).map(|need| need.package).collect()
+}
+
+fn by_hand(missing: &[&str]) -> String {
+    let list = missing.join(" ");
+    format!("as root: apt-get install --no-install-recommends {list}")
+}
+
+/// What somebody with more rights would have to do first to have everything of `needs`.
+pub(super) fn out_of_reach(needs: &[Need]) -> Option<String> {
+    let missing = missing(needs);
+    let allowed = rustix::process::geteuid().is_root();
+    (!missing.is_empty() && !allowed).then(|| by_hand(&missing))
+}
+
 /// Has everything of `needs`, by installing what is missing where that is allowed.
 ///
 /// # Errors
 /// Names the missing packages and the command that installs them.
 pub(super) fn require(needs: &[Need]) -> Outcome<()> {
-    let absent = |need: &&Need| !std::path::Path::new(need.file).exists();
-    let missing: Vec<&str> = needs.iter().filter(absent).map(|need| need.package).collect();
-    if missing.is_empty() {
+    let absent = missing(needs);
+    if absent.is_empty() {
         return Ok(());
     }
-    let list = missing.join(" ");
-    let by_hand = format!("install them: apt-get install --no-install-recommends {list}");
-    if !rustix::process::geteuid().is_root() {
-        return Err(format!("the guest needs Debian packages; {by_hand}").into());
+    if let Some(remedy) = out_of_reach(needs) {
+        return Err(format!("the guest needs Debian packages; {remedy}").into());
     }
-    eprintln!("installing {list}");
+    eprintln!("installing {}", absent.join(" "));
     let install = ["install", "--yes", "--quiet=2", "--no-install-recommends"];
-    let installed = apt_get(&["update", "--quiet=2"]) && {
-        let arguments: Vec<&str> = install.iter().chain(&missing).copied().collect();
-        apt_get(&arguments)
-    };
-    let left: Vec<&str> = needs.iter().filter(absent).map(|need| need.package).collect();
+    let installed = apt_get(&["update", "--quiet=2"])
+        && apt_get(&install.iter().chain(&absent).copied().collect::<Vec<_>>());
+    let left = missing(needs);
     if !installed || !left.is_empty() {
-        return Err(format!("could not install the guest's packages; {by_hand}").into());
+        let remedy = by_hand(&left);
+        return Err(format!("could not install the guest's packages; {remedy}").into());
     }
     Ok(())
 }

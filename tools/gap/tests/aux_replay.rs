@@ -80,8 +80,14 @@ fn driving_straight_is_in_bounds() {
     assert_eq!(out(&report), [""; 0]);
 }
 
+/// Two wheels are not, by a few mm/s: which wheels carry on the ramp parts, and with it who slips
+/// when the machine brakes. `docs/second-opinion.md` has the figures.
 #[test]
-fn a_ramp_is_in_bounds() {
+fn a_ramp_is_in_bounds_but_for_two_wheels() {
     let Some(report) = replay("run-5-ramp.log.gz") else { return };
-    assert_eq!(out(&report), [""; 0]);
+    let known = ["wheel_speed.FR", "wheel_speed.MR"];
+    assert!(out(&report).iter().all(|signal| known.contains(signal)), "{:?}", out(&report));
+    for row in report.rows.iter().filter(|row| known.contains(&row.signal.as_str())) {
+        assert!(row.errors.rmse < 0.03, "{}: {}", row.signal, row.errors.rmse);
+    }
 }

@@ -20,9 +20,10 @@ impl<T> Default for Series<T> {
 }
 
 impl<T> Series<T> {
-    /// Adds a sample. Times must not fall: a log is in bus order.
+    /// Adds a sample. A log is in bus order; where its clock steps back all the same, time stands
+    /// still until it has caught up.
     pub fn push(&mut self, at_s: f64, value: T) {
-        debug_assert!(self.0.last().is_none_or(|last| last.at_s <= at_s));
+        let at_s = self.0.last().map_or(at_s, |last| last.at_s.max(at_s));
         self.0.push(Sample { at_s, value });
     }
 
@@ -126,6 +127,14 @@ mod tests {
         assert!(series.between(20.0, 30.0).is_empty());
         assert_eq!(series.known_at(0.55).unwrap().value, 2.75);
         assert_eq!(series.known_at(-0.1), None);
+    }
+
+    #[test]
+    fn time_never_falls() {
+        let mut series = line();
+        series.push(3.0, 7.0);
+        assert_eq!(series.last(), Some(&Sample { at_s: 10.0, value: 7.0 }));
+        assert_eq!(series.between(9.95, 10.0).len(), 2);
     }
 
     #[test]

@@ -102,7 +102,7 @@ mod tests {
         for line in [
             "cd /home/someone/xt28",
             "\"/root/.cargo\"",
-            "at (/work/main)",
+            "at (/builds/xt28)",
             "http://build-cache:8080/simple",
             "https://10.0.0.7/index",
             "https://crates.corp/",

@@ -20,7 +20,10 @@ fn python_with_cantools() -> Option<&'static str> {
     if found {
         return Some("python3");
     }
-    assert!(std::env::var_os("CI").is_none(), "CI needs python3 with cantools (pip install cantools)");
+    assert!(
+        std::env::var_os("CI").is_none(),
+        "CI needs python3 with cantools (pip install cantools)"
+    );
     eprintln!("SKIPPED: python3 has no cantools; pip install cantools");
     None
 }

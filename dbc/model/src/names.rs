@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::generate::GenerateError;
+use crate::generate_error::GenerateError;
 
 /// Words that no field, type or variant may be called.
 const KEYWORDS: [&str; 52] = [

@@ -138,6 +138,10 @@ pub struct Vehicle {
     pub arm_com_share: f64,
     /// Radius of gyration of a wheel about its axle, m.
     pub wheel_gyration_m: f64,
+    /// Stiffness of a tyre on the ground, N/m.
+    pub tyre_stiffness_n_m: f64,
+    /// Damping of a tyre on the ground, N s/m.
+    pub tyre_damping_n_s_m: f64,
     /// Arm pivot from the centre line, m. The wheel hangs outboard of it.
     pub arm_pivot_y_m: f64,
     /// Torque per speed error of a circuit's mean, Nm per rad/s and wheel.
@@ -154,11 +158,13 @@ impl Default for Vehicle {
     fn default() -> Self {
         Self {
             arm_com_share: 0.5,
-            wheel_gyration_m: 0.5,
+            wheel_gyration_m: 0.6,
+            tyre_stiffness_n_m: 8.0e6,
+            tyre_damping_n_s_m: 6.0e4,
             arm_pivot_y_m: 1.175,
             circuit_gain_nms: 10_000.0,
             mean_integral_nm: 145_000.0,
-            joint_stiffness_nm: 4.0e6,
+            joint_stiffness_nm: 2.5e6,
             joint_damping_nms: 2.8e5,
         }
     }
@@ -250,6 +256,8 @@ impl Machine {
             ("arms.stroke_max_m", self.arms.stroke_max_m),
             ("arms.area_bore_m2", self.arms.area_bore_m2),
             ("arms.area_rod_m2", self.arms.area_rod_m2),
+            ("vehicle.tyre_stiffness_n_m", self.vehicle.tyre_stiffness_n_m),
+            ("vehicle.tyre_damping_n_s_m", self.vehicle.tyre_damping_n_s_m),
             ("hydraulics.speed_full_m_s", self.hydraulics.speed_full_m_s),
             ("hydraulics.lock_stiffness_n_m", self.hydraulics.lock_stiffness_n_m),
             ("drive.speed_full_m_s", self.drive.speed_full_m_s),

@@ -53,7 +53,7 @@ pub(crate) struct HingeMotion {
 impl RigidBodies {
     /// The machine on `terrain`, front axle at the origin heading east, arms at `stroke_m`.
     pub(crate) fn new(machine: &Machine, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
-        let mut world = new_world();
+        let mut world = new_world(machine);
         let ground = world.colliders.insert(
             ColliderBuilder::new(SharedShape::new(Ground(terrain.clone())))
                 .friction(machine.wheels.friction as Real)

@@ -7,9 +7,10 @@ use crate::ground_contact::GroundDispatcher;
 
 /// Stroke at which the machine file gives the frames' positions, m.
 pub(crate) const REFERENCE_STROKE_M: f64 = 0.25;
-/// Contact spring between a wheel and the ground, Hz and damping ratio (assumed near-rigid).
-const CONTACT_HZ: Real = 60.0;
-const CONTACT_DAMPING: Real = 2.0;
+/// What a wheel's contact moves, kg: the wheel, its share of the arm, and what the cylinder's lock
+/// resists within a step. The engine states a contact's spring as a frequency of this mass; a test
+/// holds the sag that comes of it to the tyre's stiffness.
+const CONTACT_MASS_KG: f64 = 770.0;
 
 #[allow(clippy::cast_possible_truncation)]
 pub(crate) fn vector(v: [f64; 3]) -> Vector {
@@ -23,7 +24,7 @@ pub(crate) fn arm_sign(machine: &Machine, wheel: Wheel) -> f64 {
 }
 
 /// A world without sleep, clustering or continuous collision: wheels roll slowly on known ground.
-pub(crate) fn new_world() -> PhysicsWorld {
+pub(crate) fn new_world(machine: &Machine) -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
     world.gravity = vector([0.0, 0.0, -xt28_machine::GRAVITY_M_S2]);
     world.narrow_phase = NarrowPhase::with_query_dispatcher(GroundDispatcher);
@@ -34,9 +35,18 @@ pub(crate) fn new_world() -> PhysicsWorld {
     p.friction_in_bias_pass = true;
     p.max_ccd_substeps = 0;
     p.contact_recycling = false;
-    p.static_contact_softness = SpringCoefficients::new(CONTACT_HZ, CONTACT_DAMPING);
+    p.static_contact_softness = tyre(machine);
     p.normalized_allowed_linear_error = 0.0;
     world
+}
+
+/// The tyres' spring and damper, as the engine wants a contact's.
+#[allow(clippy::cast_possible_truncation)]
+fn tyre(machine: &Machine) -> SpringCoefficients<Real> {
+    let v = &machine.vehicle;
+    let rad_s = (v.tyre_stiffness_n_m / CONTACT_MASS_KG).sqrt();
+    let damping_ratio = v.tyre_damping_n_s_m / (2.0 * CONTACT_MASS_KG * rad_s);
+    SpringCoefficients::new((rad_s / core::f64::consts::TAU) as Real, damping_ratio as Real)
 }
 
 /// Frames share the machine's axes: each body's origin is the machine file's origin.

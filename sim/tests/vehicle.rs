@@ -193,3 +193,23 @@ fn blocks_alone_reproduce_the_whole() {
         assert_eq!(out.pump_pressure_pa, after.pump_pressure_pa);
     }
 }
+
+/// The engine takes a contact's spring as a frequency of a mass it works out itself, so the tyre's
+/// stiffness is what a stander's sag says it is.
+#[test]
+fn the_tyres_sag_by_their_stiffness() {
+    let machine = Machine::xt28();
+    let linkage = machine.linkage();
+    let mut vehicle = Vehicle::new(&machine, &Terrain::Flat, PerWheel::splat(0.25));
+    for _ in 0..2000 {
+        vehicle.step(&Actuation::idle(1200.0));
+    }
+    let s = vehicle.state();
+    for wheel in Wheel::ALL {
+        let x_m = machine.wheels.axle_x_m[wheel.axle() as usize];
+        let drop_m = linkage.at_stroke(s.stroke_m[wheel]).drop_m - linkage.at_stroke(0.25).drop_m;
+        let sag_m = drop_m - s.position_m[2] - x_m * s.pitch_rad;
+        let wanted_m = s.ground_force_n[wheel] / machine.vehicle.tyre_stiffness_n_m;
+        assert!((sag_m / wanted_m - 1.0).abs() < 0.25, "{wheel}: {sag_m} m, not {wanted_m} m");
+    }
+}

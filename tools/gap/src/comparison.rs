@@ -16,9 +16,6 @@ const WHEEL_SPEED_M_S: f64 = 0.02;
 const ATTITUDE_DEG: f64 = 0.3;
 const LOAD_SUM_PERCENT: f64 = 2.0;
 
-/// A wheel with less than this on its cylinder, as a wheel load, is as good as in the air, N.
-const CARRIES_N: f64 = 0.0;
-
 /// One signal of a replay.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
@@ -41,8 +38,6 @@ struct Group {
     unit: &'static str,
     per_si: f64,
     bound: Option<f64>,
-    /// Only while the wheel carries, in the log and in ours.
-    only_carrying: bool,
 }
 
 /// All rows: those with a bound first, then those that inform.
@@ -50,10 +45,6 @@ struct Group {
 /// A signal is in bounds if its **RMSE** over the run is; the largest error stands beside it. An
 /// instant is worse measured by one sample of a quantised signal than a run by all of them, and a
 /// single tick's delay at a step of the throttle would fail a bound on the largest error.
-///
-/// The speed of a wheel is judged while the wheel carries in both. One that hangs in the air turns as
-/// its circuit pushes it and says nothing of the machine, and which one hangs is open: see
-/// `docs/second-opinion.md`. Its speed over all the run informs.
 pub(crate) fn rows(
     log: &BTreeMap<Channel, Series>,
     ours: &BTreeMap<Channel, Series>,
@@ -69,24 +60,15 @@ pub(crate) fn rows(
 }
 
 fn groups(wheel_radius_m: f64) -> Vec<Group> {
-    let group = |channels: Vec<Channel>, unit, per_si, bound| Group {
-        channels,
-        unit,
-        per_si,
-        bound,
-        only_carrying: false,
-    };
+    let group =
+        |channels: Vec<Channel>, unit, per_si, bound| Group { channels, unit, per_si, bound };
     let wheels = |make: fn(Wheel) -> Channel| Wheel::ALL.map(make).to_vec();
     let deg = 1.0_f64.to_degrees();
     vec![
         group(wheels(Channel::Stroke), "mm", 1e3, Some(STROKE_MM)),
         group(vec![Channel::FrontJoint, Channel::RearJoint], "deg", deg, Some(JOINT_DEG)),
-        Group {
-            only_carrying: true,
-            ..group(wheels(Channel::WheelSpeed), "m/s", wheel_radius_m, Some(WHEEL_SPEED_M_S))
-        },
+        group(wheels(Channel::WheelSpeed), "m/s", wheel_radius_m, Some(WHEEL_SPEED_M_S)),
         group(vec![Channel::Roll, Channel::Pitch], "deg", deg, Some(ATTITUDE_DEG)),
-        group(wheels(Channel::WheelSpeed), "m/s", wheel_radius_m, None),
         group(wheels(Channel::WheelLoad), "kN", 1e-3, None),
         group(wheels(Channel::CylinderLoad), "kN", 1e-3, None),
         group(wheels(Channel::BorePressure), "bar", 1e-5, None),
@@ -103,30 +85,11 @@ fn groups(wheel_radius_m: f64) -> Vec<Group> {
 impl Group {
     fn rows(&self, log: &BTreeMap<Channel, Series>, ours: &BTreeMap<Channel, Series>) -> Vec<Row> {
         let row = |channel: &Channel| {
-            let (measured, simulated) = (log.get(channel)?, ours.get(channel)?);
-            let judged = match channel {
-                Channel::WheelSpeed(wheel) if self.only_carrying => {
-                    carrying(measured, *wheel, [log, ours])
-                }
-                _ => measured.clone(),
-            };
-            let errors = Errors::between(&judged, simulated)?;
-            let name = match (channel, self.bound) {
-                (Channel::WheelSpeed(_), None) => format!("{channel} (all)"),
-                _ => channel.to_string(),
-            };
-            Some(Row::new(name, self.unit, errors.scaled(self.per_si), self.bound))
+            let errors = Errors::between(log.get(channel)?, ours.get(channel)?)?;
+            Some(Row::new(channel.to_string(), self.unit, errors.scaled(self.per_si), self.bound))
         };
         self.channels.iter().filter_map(row).collect()
     }
-}
-
-/// The samples at which a wheel carries in every machine whose loads are known.
-fn carrying(speed: &Series, wheel: Wheel, machines: [&BTreeMap<Channel, Series>; 2]) -> Series {
-    let loads = machines.map(|series| series.get(&Channel::WheelLoad(wheel)));
-    let carries =
-        |at_s| loads.iter().flatten().all(|load| load.at(at_s).is_none_or(|n| n > CARRIES_N));
-    speed.iter().filter(|(at_s, _)| carries(*at_s)).collect()
 }
 
 /// The sum of the wheel loads, as a share of its mean in the log.

@@ -80,14 +80,14 @@ fn driving_straight_is_in_bounds() {
     assert_eq!(out(&report), [""; 0]);
 }
 
-/// Two wheels are not, by a few mm/s: which wheels carry on the ramp parts, and with it who slips
-/// when the machine brakes. `docs/second-opinion.md` has the figures.
+/// One wheel is not, by a few mm/s: it hardly carries when the machine brakes, and slips sooner in
+/// the log than in ours. `docs/second-opinion.md` has the figure.
 #[test]
-fn a_ramp_is_in_bounds_but_for_two_wheels() {
+fn a_ramp_is_in_bounds_but_for_one_wheel() {
     let Some(report) = replay("run-5-ramp.log.gz") else { return };
-    let known = ["wheel_speed.FR", "wheel_speed.MR"];
+    let known = ["wheel_speed.MR"];
     assert!(out(&report).iter().all(|signal| known.contains(signal)), "{:?}", out(&report));
     for row in report.rows.iter().filter(|row| known.contains(&row.signal.as_str())) {
-        assert!(row.errors.rmse < 0.03, "{}: {}", row.signal, row.errors.rmse);
+        assert!(row.errors.rmse < 0.025, "{}: {}", row.signal, row.errors.rmse);
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::Linkage;
+use crate::{Linkage, Wheel};
 
 /// The numbers of one machine. Units are in the field names; sources stand in `xt28.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -55,6 +55,16 @@ pub enum MachineError {
         value: f64,
         /// What it must be.
         must: &'static str,
+    },
+    /// The two circuits do not drive each wheel once.
+    #[error(
+        "{path}: wheels.circuit_1 and wheels.circuit_2 must name each of FR FL MR ML BR BL once, not {found}"
+    )]
+    Circuits {
+        /// The file.
+        path: PathBuf,
+        /// The names found, both circuits.
+        found: String,
     },
 }
 
@@ -243,7 +253,26 @@ impl Machine {
         m.front_frame_kg + m.middle_frame_kg + m.rear_frame_kg + 6.0 * (m.arm_kg + m.wheel_kg)
     }
 
+    /// The wheels of the two hydrostatic circuits; `None` unless they name each wheel once.
+    #[must_use]
+    pub fn circuits(&self) -> Option<[[Wheel; 3]; 2]> {
+        let w = &self.wheels;
+        let mut circuits = [[Wheel::Fr; 3]; 2];
+        let mut driven = [false; 6];
+        for (wheels, names) in circuits.iter_mut().zip([&w.circuit_1, &w.circuit_2]) {
+            for (wheel, name) in wheels.iter_mut().zip(names) {
+                *wheel = Wheel::from_name(name)?;
+                driven[wheel.index()] = true;
+            }
+        }
+        driven.iter().all(|&once| once).then_some(circuits)
+    }
+
     fn check(&self, path: &Path) -> Result<(), MachineError> {
+        if self.circuits().is_none() {
+            let found = [&self.wheels.circuit_1[..], &self.wheels.circuit_2[..]].concat().join(" ");
+            return Err(MachineError::Circuits { path: path.to_owned(), found });
+        }
         let positive = [
             ("masses.front_frame_kg", self.masses.front_frame_kg),
             ("masses.middle_frame_kg", self.masses.middle_frame_kg),
@@ -302,6 +331,16 @@ mod tests {
             let text = XT28.replace("radius_m = 0.74", &format!("radius_m = {bad}"));
             let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
             assert!(error.contains("wheels.radius_m"), "{error}");
+        }
+    }
+
+    #[test]
+    fn circuits_that_miss_a_wheel_or_name_none_are_refused() {
+        for bad in ["\"FX\"", "\"ML\""] {
+            let text = XT28.replace("circuit_1 = [\"FR\"", &format!("circuit_1 = [{bad}"));
+            assert_ne!(text, XT28);
+            let error = Machine::parse(&text, Path::new("m.toml")).unwrap_err().to_string();
+            assert!(error.starts_with("m.toml: wheels.circuit_1 and"), "{error}");
         }
     }
 }

@@ -90,8 +90,7 @@ impl Cylinder {
     #[must_use]
     pub fn force(&self, state: CylinderState, input: &CylinderInput) -> CylinderForce {
         let mut out = CylinderForce {
-            force_n: self.stiffness_n_m * (state.rest_m - input.stroke_m)
-                - self.damping_n_s_m * input.stroke_rate_m_s,
+            force_n: self.oil_force_n(state, input),
             stiffness_n_m: self.stiffness_n_m,
             damping_n_s_m: self.damping_n_s_m,
         };

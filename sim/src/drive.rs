@@ -63,18 +63,14 @@ pub struct DriveOutput {
 
 impl Drive {
     /// The transmission of this machine.
+    ///
+    /// # Panics
+    /// For circuits that no machine file can have: reading one refuses them.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
-        let circuit = |names: &[String; 3], else_: [Wheel; 3]| {
-            let wheels: Vec<Wheel> = names.iter().filter_map(|n| Wheel::from_name(n)).collect();
-            <[Wheel; 3]>::try_from(wheels).unwrap_or(else_)
-        };
         let w = &machine.wheels;
         Self {
-            circuits: [
-                circuit(&w.circuit_1, [Wheel::Fr, Wheel::Ml, Wheel::Bl]),
-                circuit(&w.circuit_2, [Wheel::Fl, Wheel::Mr, Wheel::Br]),
-            ],
+            circuits: machine.circuits().expect("checked when the machine was read"),
             speed_full_rad_s: machine.drive.speed_full_m_s / w.radius_m,
             engine_speed_rpm: machine.drive.engine_speed_rpm,
             engine_torque_max_nm: machine.drive.engine_torque_max_nm,

@@ -192,11 +192,7 @@ impl RigidBodies {
     }
 
     fn multibody_mut(&mut self) -> &mut Multibody {
-        let joints = &mut self.world.multibody_joints;
-        let index = joints.rigid_body_link(self.frames[0]).map(|link| link.multibody);
-        index
-            .and_then(|index| joints.get_multibody_mut(index))
-            .expect("the vehicle is one multibody")
+        multibody_of(&mut self.world.multibody_joints, self.frames[0])
     }
 
     /// Looks up where each hinge sits.
@@ -215,10 +211,7 @@ impl RigidBodies {
     /// Takes the root's freedoms from its body; clears the engine's default joint damping.
     fn free_root(&mut self) {
         let world = &mut self.world;
-        let link = world.multibody_joints.rigid_body_link(self.frames[0]).map(|l| l.multibody);
-        let multibody = link
-            .and_then(|index| world.multibody_joints.get_multibody_mut(index))
-            .expect("the vehicle is one multibody");
+        let multibody = multibody_of(&mut world.multibody_joints, self.frames[0]);
         multibody.forward_kinematics(&world.bodies, true);
         multibody.damping_mut().fill(0.0);
     }
@@ -238,14 +231,17 @@ impl RigidBodies {
         }
         move_by[2] = lift_m as Real;
         let world = &mut self.world;
-        let link = world.multibody_joints.rigid_body_link(self.frames[0]).map(|l| l.multibody);
-        let multibody = link
-            .and_then(|index| world.multibody_joints.get_multibody_mut(index))
-            .expect("the vehicle is one multibody");
+        let multibody = multibody_of(&mut world.multibody_joints, self.frames[0]);
         multibody.apply_displacements(&move_by);
         multibody.forward_kinematics(&world.bodies, false);
         multibody.update_rigid_bodies(&mut world.bodies, true);
     }
+}
+
+/// The multibody of a part; borrows the joints alone, so that the bodies stay free to be read.
+fn multibody_of(joints: &mut MultibodyJointSet, part: RigidBodyHandle) -> &mut Multibody {
+    let index = joints.rigid_body_link(part).map(|link| link.multibody);
+    index.and_then(|index| joints.get_multibody_mut(index)).expect("the vehicle is one multibody")
 }
 
 #[allow(clippy::cast_possible_truncation)]

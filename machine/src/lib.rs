@@ -3,11 +3,13 @@
 //! This crate sits at the bottom of the house. It knows neither frames nor physics engines.
 #![forbid(unsafe_code)]
 
+mod levelling;
 mod linkage;
 mod numbers;
 mod time;
 mod wheel;
 
+pub use levelling::Levelling;
 pub use linkage::{ArmPose, Linkage};
 pub use numbers::{
     Arms, Articulation, Drive, Frames, Hydraulics, Machine, MachineError, Masses, Pointing,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::{Linkage, Wheel};
+use crate::{Levelling, Linkage, Wheel};
 
 /// The numbers of one machine. Units are in the field names; sources stand in `xt28.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -21,6 +21,8 @@ pub struct Machine {
     pub sensors: Sensors,
     #[serde(default)]
     pub vehicle: Vehicle,
+    #[serde(default)]
+    pub levelling: Levelling,
 }
 
 /// Why a machine file was refused.
@@ -298,6 +300,9 @@ impl Machine {
                 let must = "it must be finite and above zero";
                 return Err(MachineError::Range { path: path.to_owned(), key, value, must });
             }
+        }
+        if let Some((key, value, must)) = self.levelling.fault() {
+            return Err(MachineError::Range { path: path.to_owned(), key, value, must });
         }
         Ok(())
     }

@@ -1,31 +1,37 @@
-//! The plant: a rapier3d vehicle made of blocks that can be stepped alone on measured inputs.
+//! The plant: a vehicle made of blocks that can be stepped alone on measured inputs.
 //!
-//! A block is a pure `step(state, input, dt)`: the arm cylinder, the drive, the steering, the
-//! sensors. [`Vehicle`] joins them to rigid bodies. Nothing here knows of frames or of a bus.
+//! A block is a pure `step(state, input, dt)`: arm hydraulics, drive, steering, tyre, sensors.
+//! [`Vehicle`] joins them to a solver of the rigid bodies ([`Bodies`]). What the nominal machine
+//! leaves out is in [`effects`]. Nothing here knows of frames or of a bus.
 #![forbid(unsafe_code)]
 
 mod actuation;
-mod cylinder;
-mod drive;
-mod gnss;
-mod ground_contact;
+mod actuators;
+mod blocks;
+mod bodies;
+pub mod effects;
 mod ground_minima;
-mod imu;
-mod rigid_bodies;
-mod rigid_parts;
+mod parts;
+mod plant;
+mod rapier;
+mod sensors;
 mod state;
-mod steering;
 mod terrain;
 mod terrain_file;
 mod vehicle;
 
 pub use actuation::Actuation;
-pub use cylinder::{Cylinder, CylinderForce, CylinderInput, CylinderState};
-pub use drive::{Drive, DriveInput, DriveOutput, DriveState};
-pub use gnss::{GnssFix, GnssReceiver};
-pub use imu::{Imu, ImuSample};
+pub use blocks::{
+    Cylinder, CylinderForce, CylinderInput, CylinderState, Drive, DriveInput, DriveOutput,
+    DriveState, Steering, SteeringInput, SteeringState, Valve, ValveState,
+};
+pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
+pub use effects::Effects;
+pub use parts::{ArmPart, Part, Parts, REFERENCE_STROKE_M, TyrePart};
+pub use plant::{Plant, STEP};
+pub use rapier::RapierBodies;
+pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample};
 pub use state::VehicleState;
-pub use steering::{Steering, SteeringInput, SteeringState};
 pub use terrain::{Ramp, Terrain};
 pub use terrain_file::TerrainError;
-pub use vehicle::{Plant, STEP, Vehicle};
+pub use vehicle::Vehicle;

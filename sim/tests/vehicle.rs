@@ -213,3 +213,23 @@ fn the_tyres_sag_by_their_stiffness() {
         assert!((sag_m / wanted_m - 1.0).abs() < 0.25, "{wheel}: {sag_m} m, not {wanted_m} m");
     }
 }
+
+/// A clone is a snapshot: both go on alike, to the bit, through contact changes on a ramp.
+#[test]
+fn a_clone_goes_on_bit_for_bit_like_the_original() {
+    let ramp = Ramp { x_m: [0.3, 1.3, 3.0, 4.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
+    let mut original = settled(&Terrain::ramp(&ramp), 0.17);
+    let drive = |step: u32| Actuation {
+        pump_displacement: [1.0; 2],
+        steer_opening: [0.1, 0.05],
+        arm_opening: PerWheel::splat(0.2 * (f64::from(step) * 0.01).sin()),
+        ..idle()
+    };
+    (0..337).for_each(|step| original.step(&drive(step)));
+    let mut copy = original.clone();
+    for step in 337..1500 {
+        original.step(&drive(step));
+        copy.step(&drive(step));
+        assert_eq!(original.state(), copy.state(), "step {step}");
+    }
+}

@@ -4,28 +4,30 @@
 //! joints give way where a lock should hold. Stiff springs are integrated implicitly by the engine.
 
 use rapier3d::prelude::*;
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{PerWheel, Wheel};
 
-use crate::Terrain;
-use crate::ground_contact::Ground;
-use crate::rigid_parts::{
-    REFERENCE_STROKE_M, arm_sign, insert_arm, insert_frames, new_world, vector,
-};
+use super::ground_contact::Ground;
+use super::insert::{insert_arm, insert_frames, new_world};
+use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
+use crate::{Parts, REFERENCE_STROKE_M, Terrain};
 
 /// Index of a hinge's own angle among a joint's six coordinates.
 const HINGE: usize = 3;
 
 /// The engine's world with handles to every part of the vehicle.
-pub(crate) struct RigidBodies {
-    pub(crate) world: PhysicsWorld,
-    pub(crate) frames: [RigidBodyHandle; 3],
-    pub(crate) arms: PerWheel<RigidBodyHandle>,
-    pub(crate) wheels: PerWheel<RigidBodyHandle>,
+pub struct RapierBodies {
+    world: PhysicsWorld,
+    frames: [RigidBodyHandle; 3],
+    arms: PerWheel<RigidBodyHandle>,
+    wheels: PerWheel<RigidBodyHandle>,
     wheel_colliders: PerWheel<ColliderHandle>,
     ground: ColliderHandle,
     joints: [Hinge; 2],
     arm_hinges: PerWheel<Hinge>,
     wheel_hinges: PerWheel<Hinge>,
+    /// Sense in which each arm extends about +y.
+    extends: PerWheel<f64>,
+    ground_force_n: PerWheel<f64>,
 }
 
 /// Where a hinge's angle is among the multibody's links and velocities.
@@ -35,49 +37,27 @@ struct Hinge {
     dof: usize,
 }
 
-/// A spring and damper about a hinge, integrated implicitly.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct HingeSpring {
-    pub(crate) stiffness_nm: f64,
-    pub(crate) damping_nms: f64,
-    pub(crate) rest_rad: f64,
-}
-
-/// Angle and rate of a hinge.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct HingeMotion {
-    pub(crate) angle_rad: f64,
-    pub(crate) rate_rad_s: f64,
-}
-
-impl RigidBodies {
-    /// The machine on `terrain`, front axle at the origin heading east, arms at `stroke_m`.
-    pub(crate) fn new(machine: &Machine, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
-        let mut world = new_world(machine);
+impl Bodies for RapierBodies {
+    fn new(parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
+        let mut world = new_world(parts);
         let ground = world.colliders.insert(
             ColliderBuilder::new(SharedShape::new(Ground(terrain.clone())))
-                .friction(machine.wheels.friction as Real)
+                // The lower coefficient of a pair counts, and that is the tyre's.
+                .friction(Real::MAX)
                 .collision_groups(InteractionGroups::new(
                     Group::GROUP_1,
                     Group::GROUP_2,
                     InteractionTestMode::And,
                 )),
         );
-        let frames = insert_frames(machine, &mut world);
-        let joint_x = [machine.articulation.front_joint_x_m, machine.articulation.rear_joint_x_m];
-        for (i, x) in joint_x.into_iter().enumerate() {
-            let anchor = vector([x, 0.0, machine.wheels.radius_m]);
-            let joint =
-                RevoluteJointBuilder::new(Vector::Z).local_anchor1(anchor).local_anchor2(anchor);
-            world.insert_multibody_joint(frames[i], frames[i + 1], joint);
-        }
+        let frames = insert_frames(parts, &mut world);
         let mut arms = PerWheel::splat(RigidBodyHandle::invalid());
         let mut wheels = arms;
         let mut wheel_colliders = PerWheel::splat(ColliderHandle::invalid());
         for wheel in Wheel::ALL {
             let frame = frames[wheel.axle() as usize];
             (arms[wheel], wheels[wheel], wheel_colliders[wheel]) =
-                insert_arm(machine, &mut world, frame, wheel);
+                insert_arm(parts, &mut world, frame, wheel);
         }
         let mut bodies = Self {
             world,
@@ -89,39 +69,85 @@ impl RigidBodies {
             joints: Default::default(),
             arm_hinges: PerWheel::splat(Hinge::default()),
             wheel_hinges: PerWheel::splat(Hinge::default()),
+            extends: PerWheel::from_fn(|wheel| parts.arms[wheel].extends),
+            ground_force_n: PerWheel::splat(0.0),
         };
         bodies.free_root();
         bodies.index_hinges();
-        bodies.place(machine, stroke_m);
+        bodies.place(parts, stroke_m);
         bodies
     }
 
-    /// Sets the spring and damper of each articulation joint and of each arm hinge for the next step.
-    pub(crate) fn set_springs(&mut self, joints: [HingeSpring; 2], arms: PerWheel<HingeSpring>) {
-        let joints = joints.map(|spring| HingeSpring { rest_rad: -spring.rest_rad, ..spring });
-        let (joint_hinges, arm_hinges) = (self.joints, self.arm_hinges);
-        let multibody = self.multibody_mut();
-        let springs = joint_hinges.iter().zip(&joints).chain(arm_hinges.0.iter().zip(&arms.0));
-        for (hinge, spring) in springs {
-            set_spring(multibody, *hinge, spring);
+    fn motion(&self) -> Motion {
+        let body = &self.world.bodies[self.frames[0]];
+        let wide = |v: Vector| v.to_array().map(f64::from);
+        Motion {
+            arm: PerWheel::from_fn(|w| {
+                signed(self.hinge_motion(self.arm_hinges[w]), self.extends[w])
+            }),
+            // The engine counts the turn of the frame behind, which goes right when the machine
+            // bends left.
+            joint: self.joints.map(|hinge| signed(self.hinge_motion(hinge), -1.0)),
+            wheel_rate_rad_s: self.wheel_hinges.map(|hinge| self.hinge_motion(hinge).rate_rad_s),
+            position_m: wide(body.translation()),
+            axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
+            velocity_m_s: wide(body.linvel()),
+            rate_rad_s: wide(body.angvel()),
+            ground_force_n: self.ground_force_n,
+            chassis_force_n: 0.0,
         }
     }
 
-    /// Sets the dry friction of the wheel hinges, Nm: what a parking brake holds.
     #[allow(clippy::cast_possible_truncation)]
-    pub(crate) fn set_brakes(&mut self, torque_nm: f64) {
-        for hinge in self.wheel_hinges.0 {
-            self.multibody_mut().frictions_mut()[hinge.dof] = torque_nm as Real;
+    fn advance(&mut self, loads: &Loads, dt_s: f64) {
+        self.set_springs(loads);
+        self.set_wheel_torques(loads);
+        self.world.integration_parameters.dt = dt_s as Real;
+        self.world.step();
+        self.ground_force_n = self.wheel_colliders.map(|wheel| self.force_between_n(wheel, dt_s));
+    }
+}
+
+/// A clone goes on bit for bit like the original: what it leaves behind is the engine's scratch
+/// space only.
+impl Clone for RapierBodies {
+    fn clone(&self) -> Self {
+        let world = PhysicsWorld {
+            gravity: self.world.gravity,
+            integration_parameters: self.world.integration_parameters,
+            islands: self.world.islands.clone(),
+            broad_phase: self.world.broad_phase.clone(),
+            narrow_phase: self.world.narrow_phase.clone(),
+            bodies: self.world.bodies.clone(),
+            colliders: self.world.colliders.clone(),
+            multibody_joints: self.world.multibody_joints.clone(),
+            ..PhysicsWorld::new()
+        };
+        Self { world, ..*self }
+    }
+}
+
+impl RapierBodies {
+    fn set_springs(&mut self, loads: &Loads) {
+        let (joints, arms, wheels) = (self.joints, self.arm_hinges, self.wheel_hinges);
+        let extends = self.extends;
+        let multibody = self.multibody_mut();
+        for (hinge, spring) in joints.iter().zip(&loads.joint) {
+            set_spring(multibody, *hinge, spring, -1.0);
+        }
+        for wheel in Wheel::ALL {
+            set_spring(multibody, arms[wheel], &loads.arm[wheel], extends[wheel]);
+            #[allow(clippy::cast_possible_truncation)]
+            let hold_nm = loads.hold_nm[wheel] as Real;
+            multibody.frictions_mut()[wheels[wheel].dof] = hold_nm;
         }
     }
 
-    /// Puts a drive torque on each wheel, with its reaction on the arm, and a drag from the ground
-    /// on the wheel alone; Nm about the axle, forward > 0.
-    pub(crate) fn set_wheel_torques(&mut self, drive_nm: PerWheel<f64>, drag_nm: PerWheel<f64>) {
+    fn set_wheel_torques(&mut self, loads: &Loads) {
         for wheel in Wheel::ALL {
             let axle = self.world.bodies[self.arms[wheel]].rotation() * Vector::Y;
             #[allow(clippy::cast_possible_truncation)]
-            let (drive, drag) = (drive_nm[wheel] as Real, drag_nm[wheel] as Real);
+            let (drive, drag) = (loads.drive_nm[wheel] as Real, loads.drag_nm[wheel] as Real);
             let arm = &mut self.world.bodies[self.arms[wheel]];
             arm.reset_torques(false);
             arm.add_torque(axle * -drive, false);
@@ -131,50 +157,22 @@ impl RigidBodies {
         }
     }
 
-    /// Advances the world by `dt_s` s.
-    #[allow(clippy::cast_possible_truncation)]
-    pub(crate) fn step(&mut self, dt_s: f64) {
-        self.world.integration_parameters.dt = dt_s as Real;
-        self.world.step();
+    /// Vertical force of the ground on a part over the last step of `dt_s` s, N.
+    fn force_between_n(&self, collider: ColliderHandle, dt_s: f64) -> f64 {
+        let Some(pair) = self.world.narrow_phase.contact_pair(self.ground, collider) else {
+            return 0.0;
+        };
+        let up = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
+        let impulse: f64 = pair
+            .manifolds()
+            .iter()
+            .flat_map(|m| m.points.iter().map(move |p| (m.data.normal.z, p.data.impulse)))
+            .map(|(normal_z, impulse)| f64::from(normal_z) * up * f64::from(impulse))
+            .sum();
+        impulse / dt_s
     }
 
-    /// Angle and rate of each articulation joint; left > 0. The engine counts the turn of the frame
-    /// behind, which goes right when the machine bends left.
-    pub(crate) fn joint_motion(&self) -> [HingeMotion; 2] {
-        self.joints.map(|hinge| {
-            let motion = self.motion(hinge);
-            HingeMotion { angle_rad: -motion.angle_rad, rate_rad_s: -motion.rate_rad_s }
-        })
-    }
-
-    /// Angle and rate of each arm about +y, from its reference pose.
-    pub(crate) fn arm_motion(&self) -> PerWheel<HingeMotion> {
-        self.arm_hinges.map(|hinge| self.motion(hinge))
-    }
-
-    /// Rate of each wheel about its axle, against its arm.
-    pub(crate) fn wheel_rate_rad_s(&self) -> PerWheel<f64> {
-        self.wheel_hinges.map(|hinge| self.motion(hinge).rate_rad_s)
-    }
-
-    /// Vertical force of the ground on each wheel over the last step of `dt_s` s, N.
-    pub(crate) fn ground_force_n(&self, dt_s: f64) -> PerWheel<f64> {
-        self.wheel_colliders.map(|collider| {
-            let Some(pair) = self.world.narrow_phase.contact_pair(self.ground, collider) else {
-                return 0.0;
-            };
-            let up = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
-            let impulse: f64 = pair
-                .manifolds()
-                .iter()
-                .flat_map(|m| m.points.iter().map(move |p| (m.data.normal.z, p.data.impulse)))
-                .map(|(normal_z, impulse)| f64::from(normal_z) * up * f64::from(impulse))
-                .sum();
-            impulse / dt_s
-        })
-    }
-
-    fn motion(&self, hinge: Hinge) -> HingeMotion {
+    fn hinge_motion(&self, hinge: Hinge) -> HingeMotion {
         let multibody = self.multibody();
         let angle = multibody.link(hinge.link).map_or(0.0, |link| link.joint().coords()[HINGE]);
         HingeMotion {
@@ -218,16 +216,15 @@ impl RigidBodies {
 
     /// Swings the arms to their strokes and sets the machine down on its lowest wheels.
     #[allow(clippy::cast_possible_truncation)]
-    fn place(&mut self, machine: &Machine, stroke_m: PerWheel<f64>) {
-        let linkage = machine.linkage();
-        let reference = linkage.at_stroke(REFERENCE_STROKE_M);
+    fn place(&mut self, parts: &Parts, stroke_m: PerWheel<f64>) {
+        let reference_drop_m = parts.linkage.at_stroke(REFERENCE_STROKE_M).drop_m;
         let mut move_by = vec![0.0; self.multibody().ndofs()];
         let mut lift_m = f64::MIN;
         for wheel in Wheel::ALL {
-            let pose = linkage.at_stroke(stroke_m[wheel]);
-            let angle = arm_sign(machine, wheel) * (pose.angle_rad - reference.angle_rad);
+            let angle = self.extends[wheel] * parts.arm_angle_rad(stroke_m[wheel]);
             move_by[self.arm_hinges[wheel].dof] = angle as Real;
-            lift_m = lift_m.max(pose.drop_m - reference.drop_m);
+            let drop_m = parts.linkage.at_stroke(stroke_m[wheel]).drop_m;
+            lift_m = lift_m.max(drop_m - reference_drop_m);
         }
         move_by[2] = lift_m as Real;
         let world = &mut self.world;
@@ -244,10 +241,15 @@ fn multibody_of(joints: &mut MultibodyJointSet, part: RigidBodyHandle) -> &mut M
     index.and_then(|index| joints.get_multibody_mut(index)).expect("the vehicle is one multibody")
 }
 
+fn signed(motion: HingeMotion, sign: f64) -> HingeMotion {
+    HingeMotion { angle_rad: sign * motion.angle_rad, rate_rad_s: sign * motion.rate_rad_s }
+}
+
 #[allow(clippy::cast_possible_truncation)]
-fn set_spring(multibody: &mut Multibody, hinge: Hinge, spring: &HingeSpring) {
+fn set_spring(multibody: &mut Multibody, hinge: Hinge, spring: &HingeSpring, sign: f64) {
     multibody.damping_mut()[hinge.dof] = spring.damping_nms as Real;
     if let Some(link) = multibody.link_mut(hinge.link) {
-        link.joint.set_spring(HINGE, spring.stiffness_nm as Real, spring.rest_rad as Real);
+        let rest_rad = sign * spring.rest_rad;
+        link.joint.set_spring(HINGE, spring.stiffness_nm as Real, rest_rad as Real);
     }
 }

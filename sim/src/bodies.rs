@@ -1,0 +1,93 @@
+//! What a solver of the rigid bodies is asked for: loads in, motion out.
+//!
+//! The plant's blocks (hydraulics, drive, tyres) turn motion into [`Loads`]; a solver turns loads
+//! into [`Motion`]. There are two behind this trait: the reference on rapier3d and the fast core.
+
+use xt28_machine::PerWheel;
+
+use crate::{Parts, Terrain};
+
+/// A solver of the vehicle's rigid bodies. A clone is a snapshot: it goes on bit for bit alike.
+pub trait Bodies: Clone {
+    /// The parts set down on the terrain, front axle at the origin heading east, arms at `stroke_m`.
+    fn new(parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self;
+
+    /// The motion after the last step.
+    fn motion(&self) -> Motion;
+
+    /// Advances by `dt_s` s under `loads`.
+    fn advance(&mut self, loads: &Loads, dt_s: f64);
+}
+
+/// Angle and rate of a hinge.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HingeMotion {
+    /// Angle, rad.
+    pub angle_rad: f64,
+    /// Rate, rad/s.
+    pub rate_rad_s: f64,
+}
+
+/// A spring and a damper about a hinge, to be integrated implicitly:
+/// torque = stiffness (rest - angle) - damping rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HingeSpring {
+    /// Stiffness, Nm/rad.
+    pub stiffness_nm: f64,
+    /// Damping, Nm s/rad.
+    pub damping_nms: f64,
+    /// Angle without torque, rad.
+    pub rest_rad: f64,
+}
+
+impl HingeSpring {
+    /// The spring and damper that make `torque_nm` in this motion, with these slopes around it.
+    #[must_use]
+    pub fn through(
+        motion: HingeMotion,
+        torque_nm: f64,
+        stiffness_nm: f64,
+        damping_nms: f64,
+    ) -> Self {
+        let twist_rad = (torque_nm + damping_nms * motion.rate_rad_s) / stiffness_nm;
+        Self { stiffness_nm, damping_nms, rest_rad: motion.angle_rad + twist_rad }
+    }
+}
+
+/// How the rigid bodies move at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Arms, from their angle at [`crate::REFERENCE_STROKE_M`]; extending (wheel down) > 0.
+    pub arm: PerWheel<HingeMotion>,
+    /// Front and rear articulation joint; left > 0.
+    pub joint: [HingeMotion; 2],
+    /// Wheels about their axles, against their arms, rad/s; forward > 0.
+    pub wheel_rate_rad_s: PerWheel<f64>,
+    /// Origin of the front frame in the world, m.
+    pub position_m: [f64; 3],
+    /// The front frame's axes x (forward), y (left), z (up), each in the world.
+    pub axes: [[f64; 3]; 3],
+    /// Velocity of the front frame's centre of mass in the world, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// Angular velocity of the front frame in the world, rad/s.
+    pub rate_rad_s: [f64; 3],
+    /// Vertical force of the ground on each wheel, mean of the last step, N.
+    pub ground_force_n: PerWheel<f64>,
+    /// Force of the ground on anything but the wheels, mean of the last step, N.
+    pub chassis_force_n: f64,
+}
+
+/// What acts on the rigid bodies over a step, beside gravity and the ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loads {
+    /// Cylinders, about the arms' hinges; signs as in [`Motion::arm`].
+    pub arm: PerWheel<HingeSpring>,
+    /// Articulation joints; signs as in [`Motion::joint`].
+    pub joint: [HingeSpring; 2],
+    /// Motor torques on the wheels, Nm, forward > 0; the arm bears the reaction.
+    pub drive_nm: PerWheel<f64>,
+    /// Rolling resistance, Nm, forward > 0: from the ground on the wheel alone.
+    pub drag_nm: PerWheel<f64>,
+    /// Dry friction that holds each wheel against its arm, Nm.
+    pub hold_nm: PerWheel<f64>,
+}

@@ -1,0 +1,62 @@
+//! Every effect there is, in the order of blocks along the machine.
+
+use super::arm_delay;
+use super::effect::Effect;
+
+/// All effects.
+pub static CATALOGUE: &[Effect] = &[arm_delay::EFFECT];
+
+/// The effect of this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Effect> {
+    CATALOGUE.iter().find(|effect| effect.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{Effects, Scope};
+
+    #[test]
+    fn names_are_unique_and_neutral_is_the_default() {
+        let nominal = Effects::default();
+        for (i, effect) in CATALOGUE.iter().enumerate() {
+            assert!(CATALOGUE[..i].iter().all(|other| other.name != effect.name));
+            assert!(!effect.parameters.is_empty(), "{}", effect.name);
+            for p in effect.parameters {
+                assert!(p.tolerance > 0.0, "{} {}", effect.name, p.name);
+                assert!(
+                    p.range[0] < p.range[1] && p.range[0] <= p.neutral && p.neutral <= p.range[1]
+                );
+                for scope in Scope::ALL {
+                    assert_eq!(p.get(&nominal, scope), p.neutral, "{} {}", effect.name, p.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_parameter_has_a_place_of_its_own() {
+        let mut effects = Effects::default();
+        let mut value = 1.0;
+        for p in CATALOGUE.iter().flat_map(|effect| effect.parameters) {
+            for wheel in xt28_machine::Wheel::ALL {
+                value += 1.0;
+                p.set(&mut effects, Scope::Wheel(wheel), value);
+            }
+        }
+        let mut value = 1.0;
+        for p in CATALOGUE.iter().flat_map(|effect| effect.parameters) {
+            let whole = matches!(p.slot, crate::effects::Slot::Whole(_));
+            for wheel in xt28_machine::Wheel::ALL {
+                value += 1.0;
+                let last = wheel == xt28_machine::Wheel::Bl;
+                assert!(
+                    whole && !last || p.get(&effects, Scope::Wheel(wheel)) == value,
+                    "{}",
+                    p.name
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! An effect as data: its name, its block and its parameters, each with a place in [`Effects`].
+
+use xt28_machine::Wheel;
+
+use super::{Effects, Scope};
+
+/// The block of the plant, or the place on the way to it, where an effect acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Block {
+    /// Arm hydraulics, from command to cylinder.
+    Arms,
+    /// The articulation joints.
+    Steering,
+    /// Throttle to wheel torque.
+    Drive,
+    /// Wheel against ground.
+    Tyre,
+    /// Masses.
+    Payload,
+    /// The ground's lie.
+    Ground,
+    /// The reading, not the machine.
+    Sensor,
+    /// What reaches the ECU, and when.
+    Bus,
+}
+
+/// Something real that the nominal plant leaves out.
+#[derive(Debug)]
+pub struct Effect {
+    /// Name in overlays and verdicts.
+    pub name: &'static str,
+    /// Where it acts.
+    pub block: Block,
+    /// What it is, in one line.
+    pub meaning: &'static str,
+    /// Where its law and size come from.
+    pub source: &'static str,
+    /// What can be set.
+    pub parameters: &'static [Parameter],
+}
+
+/// One number of an effect.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Name in overlays and verdicts, with its unit.
+    pub name: &'static str,
+    /// Value at which the effect is not there.
+    pub neutral: f64,
+    /// Standard deviation that a careful engineer would believe before seeing data.
+    pub tolerance: f64,
+    /// Values the law is made for, ends included.
+    pub range: [f64; 2],
+    /// Where it sits.
+    pub slot: Slot,
+}
+
+/// Where a parameter sits in [`Effects`].
+#[derive(Clone, Copy, Debug)]
+pub enum Slot {
+    /// One for each wheel or arm.
+    PerWheel(fn(&mut Effects, Wheel) -> &mut f64),
+    /// One for the machine.
+    Whole(fn(&mut Effects) -> &mut f64),
+}
+
+impl Effect {
+    /// Whether it can act on some wheels and not on others.
+    #[must_use]
+    pub fn has_scope(&self) -> bool {
+        self.parameters.iter().any(|p| matches!(p.slot, Slot::PerWheel(_)))
+    }
+
+    /// The parameter of this name.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|p| p.name == name)
+    }
+}
+
+impl Parameter {
+    /// Sets it on every wheel of `scope`, or once where it has no wheel.
+    pub fn set(&self, effects: &mut Effects, scope: Scope, value: f64) {
+        match self.slot {
+            Slot::PerWheel(slot) => scope.wheels().for_each(|w| *slot(effects, w) = value),
+            Slot::Whole(slot) => *slot(effects) = value,
+        }
+    }
+
+    /// Its value on the first wheel of `scope`, or its one value where it has no wheel.
+    #[must_use]
+    pub fn get(&self, effects: &Effects, scope: Scope) -> f64 {
+        let mut copy = effects.clone();
+        match self.slot {
+            Slot::PerWheel(slot) => {
+                let wheel = scope.wheels().next().expect("no scope is empty");
+                *slot(&mut copy, wheel)
+            }
+            Slot::Whole(slot) => *slot(&mut copy),
+        }
+    }
+}

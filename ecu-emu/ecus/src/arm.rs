@@ -1,6 +1,7 @@
 //! The pendulum-arm ECU ("SMS"): commands and sensors in, solenoid currents and frames out.
 
 mod attitude;
+mod automatic;
 mod command;
 mod frames;
 mod position_control;
@@ -13,8 +14,10 @@ use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
 
 use self::attitude::AttitudeFilter;
+use self::automatic::{Automatic, Currents};
 use self::command::{ArmCommands, ArmDemand};
-use self::position_control::{PositionControl, PositionGains};
+use self::position_control::PositionControl;
+pub use self::position_control::PositionGains;
 use self::sensing::{ArmReadings, ArmSensing};
 use self::stroke_limit::StrokeLimit;
 use crate::input_check::{InputCheck, Supply, worst};
@@ -55,18 +58,20 @@ pub struct ArmOutputs {
     pub can2: Outbox,
 }
 
-/// The pendulum-arm ECU, profile of the paper: modes off, manual position and manual valve.
+/// The pendulum-arm ECU, profile of the paper: modes off, automatic, manual position and manual
+/// valve. The passive accumulators are under all of them: they are hydraulics, not control.
 ///
-/// Mode automatic is refused: its law comes with the cascade it needs. The soft limits are the ends
-/// of the paper's stroke range, not the 20 and 460 mm of the public firmware (facts 3.6).
+/// The soft limits are the ends of the paper's stroke range, not the 20 and 460 mm of the public
+/// firmware (facts 3.6).
 #[derive(Clone, Debug)]
 pub struct ArmEcu {
     commands: ArmCommands,
     state: State,
     refusal: Refusal,
-    gains: PositionGains,
+    gains: PerWheel<PositionGains>,
     limit: StrokeLimit,
     control: PerWheel<PositionControl>,
+    automatic: Automatic,
     sensing: ArmSensing,
     attitude: AttitudeFilter,
     stroke_checks: PerWheel<InputCheck>,
@@ -82,15 +87,21 @@ impl ArmEcu {
             commands: ArmCommands::new(machine.arms.stroke_max_m),
             state: State::Init,
             refusal: Refusal::None,
-            gains: PositionGains::new(&machine.hydraulics),
+            gains: PerWheel::splat(PositionGains::new(&machine.hydraulics)),
             limit: StrokeLimit::up_to(machine.arms.stroke_max_m),
             control: PerWheel::splat(PositionControl::default()),
+            automatic: Automatic::new(machine),
             sensing: ArmSensing::new(machine),
             attitude: AttitudeFilter::default(),
             stroke_checks: PerWheel::splat(InputCheck::default()),
             pressure_checks: [PerWheel::splat(InputCheck::default()); 2],
             counter: AliveCounter::default(),
         }
+    }
+
+    /// Sets the gains of the manual modes, arm by arm, as a service tool would.
+    pub const fn set_position_gains(&mut self, gains: PerWheel<PositionGains>) {
+        self.gains = gains;
     }
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
@@ -115,8 +126,8 @@ impl ArmEcu {
     pub fn tick(&mut self, now: SimTime, pins: &ArmPins, out: &mut ArmOutputs) {
         let readings = self.sensing.step(pins);
         self.attitude.step();
-        let (health, faults) = self.diagnose(now, pins);
         let demand = self.commands.fresh(now);
+        let (health, faults) = self.diagnose(now, pins, demand.as_ref());
         let commanded =
             demand.map(|d| Commanded { request: d.request(), frames: self.commands.frames() });
         let before = self.state;
@@ -126,11 +137,9 @@ impl ArmEcu {
         }
 
         let demand = demand.filter(|_| self.state == State::Active).unwrap_or(ArmDemand::Off);
-        let wanted = self.openings(&demand, &readings);
-        let opening = PerWheel::from_fn(|w| self.limit.hold(wanted[w], readings.stroke_mm[w]));
-        let current_ma = opening.map(pins::valve_ma);
-        out.solenoid_a_ma = current_ma.map(|[a, _]| a);
-        out.solenoid_b_ma = current_ma.map(|[_, b]| b);
+        let currents = self.currents(&demand, &readings);
+        out.solenoid_a_ma = currents.actual_ma.map(|[a, _]| a);
+        out.solenoid_b_ma = currents.actual_ma.map(|[_, b]| b);
 
         out.can1.clear();
         out.can2.clear();
@@ -138,7 +147,7 @@ impl ArmEcu {
         frames::motion(&readings, &mut out.can1);
         frames::forces(&readings, &mut out.can1);
         frames::attitude(&readings, &self.attitude, &mut out.can1);
-        frames::currents(&current_ma, &mut out.can1);
+        frames::currents(&currents, &mut out.can1);
         let status = frames::Status {
             demand: &demand,
             state: self.state,
@@ -157,19 +166,34 @@ impl ArmEcu {
         self.state
     }
 
-    /// Valve openings, + extends.
+    /// What the solenoids get for a demand.
+    fn currents(&mut self, demand: &ArmDemand, readings: &ArmReadings) -> Currents {
+        if let ArmDemand::Automatic(height_m) = demand {
+            self.control = PerWheel::splat(PositionControl::default());
+            let angles_deg = self.attitude.angles_deg();
+            return self.automatic.step(*height_m, readings, angles_deg, &self.limit);
+        }
+        self.automatic.reset();
+        let wanted = self.openings(demand, readings);
+        let opening = PerWheel::from_fn(|w| self.limit.hold(wanted[w], readings.stroke_mm[w]));
+        Currents::immediate(opening.map(pins::valve_ma))
+    }
+
+    /// Valve openings of the manual modes, + extends.
     fn openings(&mut self, demand: &ArmDemand, readings: &ArmReadings) -> PerWheel<f64> {
         let ArmDemand::Position(target_mm) = demand else {
             self.control = PerWheel::splat(PositionControl::default());
             return match demand {
-                ArmDemand::Valve(opening) => opening.map(|o| self.gains.bounded(o)),
+                ArmDemand::Valve(opening) => {
+                    PerWheel::from_fn(|w| self.gains[w].bounded(opening[w]))
+                }
                 _ => PerWheel::splat(0.0),
             };
         };
         PerWheel::from_fn(|wheel: Wheel| {
             let control = &mut self.control[wheel];
             if let Some(target_mm) = target_mm[wheel] {
-                control.step(&self.gains, target_mm, readings.stroke_mm[wheel])
+                control.step(&self.gains[wheel], target_mm, readings.stroke_mm[wheel])
             } else {
                 control.reset();
                 0.0
@@ -177,21 +201,34 @@ impl ArmEcu {
         })
     }
 
-    /// Only the position sensors can stop the arms: no other input is in the loop (facts 3.9).
-    fn diagnose(&mut self, now: SimTime, pins: &ArmPins) -> (Health, u16) {
+    /// What stops the arms: the inputs that are in the loop of the mode asked for. In the manual
+    /// modes those are the strokes, in automatic all that there are (facts 3.9).
+    fn diagnose(
+        &mut self,
+        now: SimTime,
+        pins: &ArmPins,
+        demand: Option<&ArmDemand>,
+    ) -> (Health, u16) {
         let position = worst(&mut self.stroke_checks.0, now, &pins.stroke_mv.0);
         let [a, b] = &mut self.pressure_checks;
         let pressures = [
             worst(&mut a.0, now, &pins.pressure_a_mv.0),
             worst(&mut b.0, now, &pins.pressure_b_mv.0),
         ];
+        let lost = self.attitude.is_lost(now);
         let faults = [
             (position == Health::Broken, fault::POSITION),
             (pressures.contains(&Health::Broken), fault::PRESSURE),
-            (self.attitude.is_lost(now), fault::ATTITUDE),
+            (lost, fault::ATTITUDE),
             (Supply::read(pins.supply_mv).is_bad(), fault::SUPPLY),
         ];
         let bits = faults.into_iter().filter(|(is, _)| *is).fold(0, |all, (_, bit)| all | bit);
-        (position, bits)
+        let [a, b] = pressures;
+        let needed = match demand {
+            Some(ArmDemand::Automatic(_)) if lost => Health::Broken,
+            Some(ArmDemand::Automatic(_)) => position.max(a).max(b),
+            _ => position,
+        };
+        (needed, bits)
     }
 }

@@ -16,7 +16,7 @@ mod port;
 mod refusal;
 mod send;
 
-pub use arm::{ArmEcu, ArmOutputs, ArmPins};
+pub use arm::{ArmEcu, ArmOutputs, ArmPins, PositionGains};
 pub use drive::{DriveEcu, DriveOutputs, DrivePins};
 pub use life::State;
 pub use port::Port;

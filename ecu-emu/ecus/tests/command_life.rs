@@ -1,6 +1,6 @@
 //! Life of a command, through the frames alone: taken, refused, lost, taken up again.
 
-use xt28_dbc::e2e::AliveCounter;
+use xt28_dbc::e2e::{self, AliveCounter};
 use xt28_dbc::messages::{
     ArmStatus, ArmStatusMode, ArmStatusReason, ArmStatusState, ArmTarget, ArmTargetMode, ArmValve,
     DriveStatus, DriveStatusReason, DriveStatusState, DriveTarget, PosFront, RefCurrentFront,
@@ -113,8 +113,19 @@ fn a_lost_stream_stops_within_three_periods_and_needs_rest_to_come_back() {
 
 #[test]
 fn refused_frames_say_why_and_do_not_feed_the_deadline() {
-    let cases: [(BadFrame, ArmStatusReason); 4] = [
-        (|arm| arm.target(ArmTargetMode::Automatic, 200.0), ArmStatusReason::Mode),
+    let cases: [(BadFrame, ArmStatusReason); 5] = [
+        (
+            |arm| {
+                // Mode 7 does not exist; the checksum is right for it.
+                let mut frame = arm.target(ArmTargetMode::ManualPosition, 200.0);
+                let data = frame.data_mut();
+                data[6] = (data[6] & 0xF0) | 7;
+                data[7] = e2e::crc(ArmTarget::DATA_ID, &data[..7]);
+                frame
+            },
+            ArmStatusReason::Mode,
+        ),
+        (|arm| arm.target(ArmTargetMode::Automatic, 502.0), ArmStatusReason::Range),
         (|arm| arm.target(ArmTargetMode::ManualPosition, 502.0), ArmStatusReason::Range),
         (
             |arm| {

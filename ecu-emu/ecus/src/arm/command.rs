@@ -16,6 +16,8 @@ const HOLD_MM: f64 = 510.0;
 pub(crate) enum ArmDemand {
     /// Nothing.
     Off,
+    /// Level the machine at this mean stroke, m; at its own where none is asked for.
+    Automatic(Option<f64>),
     /// Go to these strokes, mm; `None` holds the arm.
     Position(PerWheel<Option<f64>>),
     /// Open the valves this far, + extends.
@@ -26,7 +28,7 @@ impl ArmDemand {
     pub(crate) const fn request(&self) -> Request {
         match self {
             Self::Off => Request::Rest,
-            Self::Position(_) | Self::Valve(_) => Request::Move,
+            Self::Automatic(_) | Self::Position(_) | Self::Valve(_) => Request::Move,
         }
     }
 }
@@ -34,6 +36,7 @@ impl ArmDemand {
 #[derive(Clone, Copy, Debug)]
 enum Target {
     Off,
+    Automatic(Option<f64>),
     Position(PerWheel<Option<f64>>),
     /// Openings come in frames of their own, since then.
     Valve {
@@ -77,6 +80,7 @@ impl ArmCommands {
     pub(crate) fn fresh(&self, now: SimTime) -> Option<ArmDemand> {
         match self.target.fresh(now)? {
             Target::Off => Some(ArmDemand::Off),
+            Target::Automatic(height_m) => Some(ArmDemand::Automatic(height_m)),
             Target::Position(target_mm) => Some(ArmDemand::Position(target_mm)),
             Target::Valve { since } => match self.valve.fresh(now) {
                 Some(opening) => Some(ArmDemand::Valve(opening)),
@@ -102,21 +106,42 @@ impl ArmCommands {
     fn content(&self, now: SimTime, t: &ArmTarget) -> Result<Target, Refusal> {
         match t.mode {
             ArmTargetMode::Off => Ok(Target::Off),
-            ArmTargetMode::Automatic => Err(Refusal::Mode),
             ArmTargetMode::ManualValve => Ok(match self.target.fresh(now) {
                 Some(valve @ Target::Valve { .. }) => valve,
                 _ => Target::Valve { since: now },
             }),
-            ArmTargetMode::ManualPosition => {
-                let mm = PerWheel([t.fr_mm, t.fl_mm, t.mr_mm, t.ml_mm, t.br_mm, t.bl_mm]);
-                let target_mm = mm.map(|mm| (mm < HOLD_MM).then_some(mm));
-                let reachable = |mm: &Option<f64>| mm.is_none_or(|mm| mm <= self.stroke_max_mm);
-                if target_mm.0.iter().all(reachable) {
-                    Ok(Target::Position(target_mm))
-                } else {
-                    Err(Refusal::Range)
-                }
-            }
+            ArmTargetMode::Automatic => self.strokes_mm(t).map(|mm| Target::Automatic(mean_m(&mm))),
+            ArmTargetMode::ManualPosition => self.strokes_mm(t).map(Target::Position),
         }
+    }
+
+    /// The six targets, mm; `None` holds.
+    fn strokes_mm(&self, t: &ArmTarget) -> Result<PerWheel<Option<f64>>, Refusal> {
+        let mm = PerWheel([t.fr_mm, t.fl_mm, t.mr_mm, t.ml_mm, t.br_mm, t.bl_mm]);
+        let target_mm = mm.map(|mm| (mm < HOLD_MM).then_some(mm));
+        let reachable = |mm: &Option<f64>| mm.is_none_or(|mm| mm <= self.stroke_max_mm);
+        if target_mm.0.iter().all(reachable) { Ok(target_mm) } else { Err(Refusal::Range) }
+    }
+}
+
+/// Mean of the strokes that are asked for, m: in automatic mode the height. (Ours: the contract has
+/// no field of its own for it.)
+fn mean_m(target_mm: &PerWheel<Option<f64>>) -> Option<f64> {
+    let (mut sum_mm, mut count) = (0.0, 0.0);
+    for mm in target_mm.0.iter().flatten() {
+        (sum_mm, count) = (sum_mm + mm, count + 1.0);
+    }
+    (count > 0.0).then(|| sum_mm / count * 1e-3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_height_is_the_mean_of_the_strokes_that_are_asked_for() {
+        assert_eq!(mean_m(&PerWheel::splat(None)), None);
+        let two = PerWheel([Some(100.0), None, None, Some(300.0), None, None]);
+        assert_eq!(mean_m(&two), Some(0.2));
     }
 }

@@ -7,9 +7,9 @@ use xt28_dbc::messages::{
     RefCurrentFront, RefCurrentMid, RefCurrentRear, VelFront, VelMidRear, WheelForceFront,
     WheelForceMidRear,
 };
-use xt28_machine::PerWheel;
 
 use super::attitude::AttitudeFilter;
+use super::automatic::Currents;
 use super::command::ArmDemand;
 use super::sensing::ArmReadings;
 use crate::Refusal;
@@ -61,15 +61,21 @@ pub(super) fn attitude(r: &ArmReadings, filter: &AttitudeFilter, out: &mut Outbo
     send(out, &AccelCopy { x, y, z }.encode());
 }
 
-/// Commanded currents, and measured ones: the output stage holds them exactly.
-pub(super) fn currents(current_ma: &PerWheel<[f64; 2]>, out: &mut Outbox) {
-    let [[fr_a_ma, fr_b_ma], [fl_a_ma, fl_b_ma], middle_right, middle_left, back_right, back_left] =
-        current_ma.0;
+/// Commanded currents, and measured ones: left before right (facts 2.1).
+pub(super) fn currents(currents: &Currents, out: &mut Outbox) {
+    let [front_right, front_left, middle_right, middle_left, back_right, back_left] =
+        currents.wanted_ma.0;
+    let ([fr_a_ma, fr_b_ma], [fl_a_ma, fl_b_ma]) = (front_right, front_left);
     let ([mr_a_ma, mr_b_ma], [ml_a_ma, ml_b_ma]) = (middle_right, middle_left);
     let ([br_a_ma, br_b_ma], [bl_a_ma, bl_b_ma]) = (back_right, back_left);
     send(out, &RefCurrentFront { fr_a_ma, fr_b_ma, fl_a_ma, fl_b_ma }.encode());
     send(out, &RefCurrentMid { mr_a_ma, mr_b_ma, ml_a_ma, ml_b_ma }.encode());
     send(out, &RefCurrentRear { br_a_ma, br_b_ma, bl_a_ma, bl_b_ma }.encode());
+    let [front_right, front_left, middle_right, middle_left, back_right, back_left] =
+        currents.actual_ma.0;
+    let ([fr_a_ma, fr_b_ma], [fl_a_ma, fl_b_ma]) = (front_right, front_left);
+    let ([mr_a_ma, mr_b_ma], [ml_a_ma, ml_b_ma]) = (middle_right, middle_left);
+    let ([br_a_ma, br_b_ma], [bl_a_ma, bl_b_ma]) = (back_right, back_left);
     send(out, &ActCurrentFront { fl_a_ma, fl_b_ma, fr_a_ma, fr_b_ma }.encode());
     send(out, &ActCurrentMid { ml_a_ma, ml_b_ma, mr_a_ma, mr_b_ma }.encode());
     send(out, &ActCurrentRear { bl_a_ma, bl_b_ma, br_a_ma, br_b_ma }.encode());
@@ -90,6 +96,7 @@ pub(super) struct Status<'a> {
 pub(super) fn status(s: &Status<'_>, out: &mut Outbox) {
     let mode = match s.demand {
         ArmDemand::Off => ArmStatusMode::Off,
+        ArmDemand::Automatic(_) => ArmStatusMode::Automatic,
         ArmDemand::Position(_) => ArmStatusMode::ManualPosition,
         ArmDemand::Valve(_) => ArmStatusMode::ManualValve,
     };

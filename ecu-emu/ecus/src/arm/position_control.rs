@@ -4,17 +4,23 @@ use xt28_machine::Hydraulics;
 
 use crate::life::PERIOD_S;
 
-/// Gains of the controller (paper; facts 6.1).
+/// Gains of the manual position controller (paper; facts 6.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PositionGains {
-    kp_per_mm: f64,
-    ki_per_mm_s: f64,
-    windup_mm_s: f64,
-    opening_max: f64,
+pub struct PositionGains {
+    /// Valve opening per stroke error, 1/mm.
+    pub kp_per_mm: f64,
+    /// Valve opening per stroke error and second, 1/(mm s).
+    pub ki_per_mm_s: f64,
+    /// Limit of the error integral, mm s; at least 0.
+    pub windup_mm_s: f64,
+    /// Most that the manual modes open a valve, 0 to 1.
+    pub opening_max: f64,
 }
 
 impl PositionGains {
-    pub(crate) const fn new(hydraulics: &Hydraulics) -> Self {
+    /// The machine's own.
+    #[must_use]
+    pub const fn new(hydraulics: &Hydraulics) -> Self {
         Self {
             kp_per_mm: hydraulics.manual_kp_per_mm,
             ki_per_mm_s: hydraulics.manual_ki_per_mm_s,

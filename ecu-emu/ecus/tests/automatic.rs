@@ -1,0 +1,196 @@
+//! Mode automatic through the pins and frames alone: what the cascade answers, and when it refuses.
+
+use xt28_dbc::e2e::AliveCounter;
+use xt28_dbc::messages::{ActCurrentFront, ArmStatus, ArmStatusMode, ArmStatusState, ArmTarget};
+use xt28_dbc::messages::{ArmTargetMode, RefCurrentFront};
+use xt28_dbc::{CanId, Frame};
+use xt28_ecus::{ArmEcu, ArmOutputs, ArmPins, Port, PositionGains, pins};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, SimTime, Wheel};
+
+/// Raw 255: the arm is not spoken of.
+const HOLD_MM: f64 = 510.0;
+
+struct Rig {
+    ecu: ArmEcu,
+    now: SimTime,
+    pins: ArmPins,
+    roll_rad: f64,
+    pitch_rad: f64,
+    imu: bool,
+    out: ArmOutputs,
+    counter: AliveCounter,
+}
+
+impl Rig {
+    /// Level at the nominal height, every cylinder with the same load.
+    fn new() -> Self {
+        let pins = ArmPins {
+            stroke_mv: PerWheel::splat(pins::stroke_mv(0.2505)),
+            pressure_a_mv: PerWheel::splat(pins::pressure_mv(7e6)),
+            pressure_b_mv: PerWheel::splat(pins::pressure_mv(5e5)),
+            supply_mv: 24_000.0,
+        };
+        Self {
+            ecu: ArmEcu::new(&Machine::xt28()),
+            now: SimTime::ZERO,
+            pins,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            imu: true,
+            out: ArmOutputs::default(),
+            counter: AliveCounter::default(),
+        }
+    }
+
+    fn tick(&mut self, mode: ArmTargetMode, mm: f64) -> ArmStatus {
+        let counter = self.counter.next_count();
+        let [fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm] = [mm; 6];
+        let target = ArmTarget { fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm, mode, counter };
+        self.ecu.on_frame(self.now, Port::Can1, &target.encode().unwrap());
+        if self.imu {
+            let (pitch, roll) = (self.pitch_rad.sin(), self.roll_rad.sin());
+            let force = [pitch, -roll, 1.0].map(|f| f * GRAVITY_M_S2);
+            for frame in pins::imu_frames([0.0; 3], force) {
+                self.ecu.on_frame(self.now, Port::Can2, &frame);
+            }
+        }
+        self.ecu.tick(self.now, &self.pins, &mut self.out);
+        self.now += ArmTarget::PERIOD;
+        ArmStatus::decode(&self.frame(ArmStatus::ID)).unwrap()
+    }
+
+    fn automatic(&mut self, mm: f64) -> ArmStatus {
+        (0..20).map(|_| self.tick(ArmTargetMode::Automatic, mm)).last().unwrap()
+    }
+
+    fn frame(&self, id: CanId) -> Frame {
+        *self.out.can1.frames().iter().find(|frame| frame.id() == id).expect("sent every tick")
+    }
+
+    /// Valve opening at the solenoids, + extends.
+    fn opening(&self) -> PerWheel<f64> {
+        let (a, b) = (&self.out.solenoid_a_ma, &self.out.solenoid_b_ma);
+        PerWheel::from_fn(|w: Wheel| pins::valve_opening(a[w], b[w]))
+    }
+}
+
+#[test]
+fn a_level_machine_at_its_height_is_left_alone() {
+    let mut rig = Rig::new();
+    let status = rig.automatic(HOLD_MM);
+    assert_eq!((status.mode, status.state), (ArmStatusMode::Automatic, ArmStatusState::Active));
+    assert_eq!(rig.opening(), PerWheel::splat(0.0));
+}
+
+#[test]
+fn height_comes_from_the_targets_and_from_the_machine_without_them() {
+    let mut rig = Rig::new();
+    rig.automatic(300.0);
+    assert!(rig.opening().0.iter().all(|o| *o > 0.05), "{:?}", rig.opening());
+    rig.automatic(200.0);
+    assert!(rig.opening().0.iter().all(|o| *o < -0.05), "{:?}", rig.opening());
+}
+
+#[test]
+fn the_right_arms_give_way_when_the_right_side_is_high() {
+    let mut rig = Rig::new();
+    rig.roll_rad = 3_f64.to_radians();
+    rig.automatic(HOLD_MM);
+    let opening = rig.opening();
+    for (right, left) in [(Wheel::Fr, Wheel::Fl), (Wheel::Mr, Wheel::Ml), (Wheel::Br, Wheel::Bl)] {
+        assert!(opening[right] < -0.1 && opening[left] > 0.1, "{opening:?}");
+    }
+}
+
+#[test]
+fn nose_up_lowers_the_front_and_leaves_the_middle() {
+    let mut rig = Rig::new();
+    rig.pitch_rad = 2_f64.to_radians();
+    rig.automatic(HOLD_MM);
+    let opening = rig.opening();
+    assert!(opening[Wheel::Fr] < -0.1 && opening[Wheel::Bl] > 0.1, "{opening:?}");
+    assert_eq!(opening[Wheel::Mr], 0.0);
+}
+
+#[test]
+fn a_wheel_that_carries_too_much_gives_way_and_the_sum_of_all_stays() {
+    let mut rig = Rig::new();
+    rig.pins.pressure_a_mv[Wheel::Mr] = pins::pressure_mv(11e6);
+    rig.automatic(HOLD_MM);
+    let opening = rig.opening();
+    assert!(opening[Wheel::Mr] < -0.05, "{opening:?}");
+    // Its neighbours take over; neither the sum nor the balance of the sides is touched.
+    assert!(opening[Wheel::Fr] > 0.02 && opening[Wheel::Br] > 0.02, "{opening:?}");
+    assert!(opening.mean().abs() < 0.005, "{opening:?}");
+}
+
+#[test]
+fn the_bus_says_what_is_asked_of_the_solenoids_and_what_flows() {
+    let mut rig = Rig::new();
+    rig.automatic(HOLD_MM);
+    rig.roll_rad = 5_f64.to_radians();
+    // The attitude filter follows an acceleration alone slowly: wait for the valve to open.
+    let opened = (0..200).find(|_| {
+        rig.tick(ArmTargetMode::Automatic, HOLD_MM);
+        RefCurrentFront::decode(&rig.frame(RefCurrentFront::ID)).unwrap().fl_b_ma > 0.0
+    });
+    assert!(opened.is_some());
+    let wanted = RefCurrentFront::decode(&rig.frame(RefCurrentFront::ID)).unwrap();
+    let actual = ActCurrentFront::decode(&rig.frame(ActCurrentFront::ID)).unwrap();
+    assert!(wanted.fl_b_ma > 400.0, "{wanted:?}");
+    let share = actual.fl_b_ma / wanted.fl_b_ma;
+    // 1 - exp(-10 ms / 8 ms) after the first tick.
+    assert!((share - 0.7135).abs() < 0.01, "{share}");
+}
+
+#[test]
+fn any_input_in_the_loop_that_breaks_stops_the_arms() {
+    let breaks: [fn(&mut Rig); 3] = [
+        |rig| rig.imu = false,
+        |rig| rig.pins.pressure_b_mv[Wheel::Ml] = 0.0,
+        |rig| rig.pins.stroke_mv[Wheel::Br] = 4900.0,
+    ];
+    for broken in breaks {
+        let mut rig = Rig::new();
+        rig.roll_rad = 0.1;
+        assert_eq!(rig.automatic(HOLD_MM).state, ArmStatusState::Active);
+        broken(&mut rig);
+        rig.automatic(HOLD_MM);
+        let status = rig.automatic(HOLD_MM);
+        assert_eq!((status.state, status.mode), (ArmStatusState::Fault, ArmStatusMode::Off));
+        assert_eq!(rig.out.solenoid_a_ma.sum() + rig.out.solenoid_b_ma.sum(), 0.0);
+    }
+}
+
+#[test]
+fn position_control_needs_neither_pressures_nor_attitude() {
+    let mut rig = Rig::new();
+    rig.imu = false;
+    rig.pins.pressure_a_mv = PerWheel::splat(0.0);
+    let status = (0..40).map(|_| rig.tick(ArmTargetMode::ManualPosition, 300.0)).last().unwrap();
+    assert_eq!(status.state, ArmStatusState::Active);
+}
+
+#[test]
+fn a_mode_that_comes_back_begins_anew() {
+    let mut rig = Rig::new();
+    rig.automatic(300.0);
+    rig.tick(ArmTargetMode::Off, HOLD_MM);
+    assert_eq!(rig.opening(), PerWheel::splat(0.0));
+    rig.automatic(HOLD_MM);
+    assert_eq!(rig.opening(), PerWheel::splat(0.0), "nothing was left of the integral");
+}
+
+#[test]
+fn gains_may_differ_by_arm() {
+    let machine = Machine::xt28();
+    let mut rig = Rig::new();
+    let own = PositionGains::new(&machine.hydraulics);
+    let mut gains = PerWheel::splat(own);
+    gains[Wheel::Bl].kp_per_mm = own.kp_per_mm / 2.0;
+    rig.ecu.set_position_gains(gains);
+    rig.tick(ArmTargetMode::ManualPosition, 290.0);
+    let opening = rig.opening();
+    assert!((opening[Wheel::Fr] - 0.16).abs() < 0.003, "{opening:?}");
+    assert!((opening[Wheel::Bl] - 0.08).abs() < 0.003, "{opening:?}");
+}

@@ -17,6 +17,7 @@ use self::engine::EngineLink;
 use self::sensing::DriveReadings;
 use self::sequence::{ThrottleLag, displacements};
 use self::steering::Steering;
+pub use self::steering::SteeringGains;
 use crate::command_stream::CommandStream;
 use crate::input_check::{InputCheck, Supply, worst};
 use crate::life::{Commanded, Health, Request, State};
@@ -120,6 +121,11 @@ impl DriveEcu {
             status_counter: AliveCounter::default(),
             wheel_counter: AliveCounter::default(),
         }
+    }
+
+    /// Sets the gains of the steering, as a service tool would.
+    pub const fn set_steering_gains(&mut self, gains: SteeringGains) {
+        self.steering.set_gains(gains);
     }
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.

@@ -17,7 +17,7 @@ mod refusal;
 mod send;
 
 pub use arm::{ArmEcu, ArmOutputs, ArmPins, PositionGains};
-pub use drive::{DriveEcu, DriveOutputs, DrivePins};
+pub use drive::{DriveEcu, DriveOutputs, DrivePins, SteeringGains};
 pub use life::State;
 pub use port::Port;
 pub use refusal::Refusal;

@@ -23,12 +23,30 @@ impl JointControl {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-struct SteeringGains {
-    kp_per_deg: f64,
-    ki_per_s: f64,
-    rear_ratio: f64,
-    speed_threshold_m_s: f64,
+/// Gains and thresholds of the steering (paper 2.2; facts 6.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SteeringGains {
+    /// Valve opening per angle error, 1/deg.
+    pub kp_per_deg: f64,
+    /// What the error's integral counts against the error, 1/s.
+    pub ki_per_s: f64,
+    /// Where the rear joint should be, as a share of where the front one is.
+    pub rear_ratio: f64,
+    /// Up to this speed the joints hold, m/s.
+    pub speed_threshold_m_s: f64,
+}
+
+impl SteeringGains {
+    /// The machine's own.
+    #[must_use]
+    pub const fn new(articulation: &Articulation) -> Self {
+        Self {
+            kp_per_deg: articulation.kp_per_deg,
+            ki_per_s: articulation.ki_per_s,
+            rear_ratio: articulation.rear_ratio,
+            speed_threshold_m_s: articulation.speed_threshold_m_s,
+        }
+    }
 }
 
 /// Steering of both joints.
@@ -41,13 +59,13 @@ pub(crate) struct Steering {
 
 impl Steering {
     pub(crate) fn new(articulation: &Articulation) -> Self {
-        let gains = SteeringGains {
-            kp_per_deg: articulation.kp_per_deg,
-            ki_per_s: articulation.ki_per_s,
-            rear_ratio: articulation.rear_ratio,
-            speed_threshold_m_s: articulation.speed_threshold_m_s,
-        };
+        let gains = SteeringGains::new(articulation);
         Self { gains, front: JointControl::default(), rear: JointControl::default() }
+    }
+
+    /// Takes other gains; what the integrals hold stays.
+    pub(crate) const fn set_gains(&mut self, gains: SteeringGains) {
+        self.gains = gains;
     }
 
     /// Openings of the front and the rear valve, left > 0, for joints at `front_deg` and `rear_deg`

@@ -1,10 +1,33 @@
 //! Every effect there is, in the order of blocks along the machine.
 
-use super::arm_delay;
 use super::effect::Effect;
+use super::{arms, bus, drive, sensors, steering};
 
 /// All effects.
-pub static CATALOGUE: &[Effect] = &[arm_delay::EFFECT];
+pub static CATALOGUE: &[Effect] = &[
+    arms::arm_delay::EFFECT,
+    steering::steer_delay::EFFECT,
+    steering::steer_lag::EFFECT,
+    steering::steer_backlash::EFFECT,
+    steering::steer_rate::EFFECT,
+    steering::steer_gain::EFFECT,
+    steering::rear_follower_lag::EFFECT,
+    drive::throttle_delay::EFFECT,
+    drive::drive_lag::EFFECT,
+    drive::rolling_resistance::EFFECT,
+    drive::standstill_drag::EFFECT,
+    drive::engine_droop::EFFECT,
+    sensors::stroke_bias::EFFECT,
+    sensors::stroke_scale::EFFECT,
+    sensors::pressure_bias::EFFECT,
+    sensors::pressure_scale::EFFECT,
+    sensors::imu_offset::EFFECT,
+    sensors::wheel_speed_scale::EFFECT,
+    sensors::gnss_latency::EFFECT,
+    sensors::gnss_lever_arm::EFFECT,
+    bus::frame_loss::EFFECT,
+    bus::command_jitter::EFFECT,
+];
 
 /// The effect of this name.
 #[must_use]

@@ -2,18 +2,43 @@
 
 use xt28_machine::PerWheel;
 
-use super::ArmDelay;
+use super::{
+    ArmEffects, BusEffects, DriveEffects, PressureBias, PressureScale, RollingResistance,
+    SensorEffects, StandstillDrag, SteeringEffects, StrokeBias, StrokeScale, WheelSpeedScale,
+};
 
-/// What is true of this plant beyond the nominal machine. The default is nothing.
+/// What is true of this machine beyond the nominal one. The default is nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Effects {
     /// Of each arm's hydraulics.
     pub arms: PerWheel<ArmEffects>,
+    /// Of the articulation joints.
+    pub steering: SteeringEffects,
+    /// Of engine and circuits.
+    pub drive: DriveEffects,
+    /// Of each wheel and of the sensors at it.
+    pub wheels: PerWheel<WheelEffects>,
+    /// Of the sensors of which there is one.
+    pub sensors: SensorEffects,
+    /// Of the way to the ECUs.
+    pub bus: BusEffects,
 }
 
-/// What is true of one arm's hydraulics.
+/// What is true of one wheel and of the sensors of its arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ArmEffects {
-    /// Command to spool.
-    pub delay: ArmDelay,
+pub struct WheelEffects {
+    /// Ground against wheel.
+    pub rolling_resistance: RollingResistance,
+    /// Motor against wheel.
+    pub standstill_drag: StandstillDrag,
+    /// Position sensor.
+    pub stroke_bias: StrokeBias,
+    /// Position sensor.
+    pub stroke_scale: StrokeScale,
+    /// Bore pressure sensor.
+    pub pressure_bias: PressureBias,
+    /// Both pressure sensors.
+    pub pressure_scale: PressureScale,
+    /// Speed sensor.
+    pub wheel_speed_scale: WheelSpeedScale,
 }

@@ -1,6 +1,6 @@
 //! `arm-delay`: transport delay between the valve command and the spool.
 
-use super::effect::{Block, Effect, Parameter, Slot};
+use crate::effects::{Block, Effect, Parameter, Slot};
 
 /// The delay of one arm's valve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -10,7 +10,7 @@ pub struct ArmDelay {
 }
 
 /// Bus, task and pilot stage add up before a spool moves.
-pub(super) const EFFECT: Effect = Effect {
+pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "arm-delay",
     block: Block::Arms,
     meaning: "transport delay from the valve command to the spool",

@@ -1,0 +1,25 @@
+//! `pressure-bias`: the bore chamber's pressure sensor reads a constant too much.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// The offset of one cylinder's bore pressure sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PressureBias {
+    /// Reading less true pressure, Pa.
+    pub bias_pa: f64,
+}
+
+/// Zero drift. It shows as a wheel force that is not there: 1 bar is 0.8 kN in the cylinder.
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "pressure-bias",
+    block: Block::Sensor,
+    meaning: "a bore pressure sensor reads a constant too much",
+    source: "assumed: 0.5 % of a 400 bar range",
+    parameters: &[Parameter {
+        name: "bias_pa",
+        neutral: 0.0,
+        tolerance: 2.0e5,
+        range: [-5.0e6, 5.0e6],
+        slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].pressure_bias.bias_pa),
+    }],
+};

@@ -1,0 +1,31 @@
+//! `stroke-scale`: a position sensor reads in proportion too much.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// The scale error of one cylinder's position sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrokeScale {
+    /// Reading over true stroke.
+    pub factor: f64,
+}
+
+impl Default for StrokeScale {
+    fn default() -> Self {
+        Self { factor: 1.0 }
+    }
+}
+
+/// A sensor of another length than the scaling table says, or a supply that is off.
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "stroke-scale",
+    block: Block::Sensor,
+    meaning: "a position sensor reads in proportion too much",
+    source: "assumed: linear position sensors are within 1 %",
+    parameters: &[Parameter {
+        name: "factor",
+        neutral: 1.0,
+        tolerance: 0.01,
+        range: [0.5, 1.5],
+        slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].stroke_scale.factor),
+    }],
+};

@@ -1,0 +1,31 @@
+//! `wheel-speed-scale`: a wheel's speed sensor counts more or fewer pulses a turn than assumed.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// The scale error of one wheel's speed sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WheelSpeedScale {
+    /// Reading over true speed.
+    pub factor: f64,
+}
+
+impl Default for WheelSpeedScale {
+    fn default() -> Self {
+        Self { factor: 1.0 }
+    }
+}
+
+/// Another ratio of the final drive than the table's: the reading is off, not the speed.
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "wheel-speed-scale",
+    block: Block::Sensor,
+    meaning: "a wheel speed sensor reads in proportion too much",
+    source: "assumed: pulse counts are exact, the rolling radius is known to 1 %",
+    parameters: &[Parameter {
+        name: "factor",
+        neutral: 1.0,
+        tolerance: 0.01,
+        range: [0.5, 1.5],
+        slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].wheel_speed_scale.factor),
+    }],
+};

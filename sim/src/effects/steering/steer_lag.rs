@@ -1,0 +1,25 @@
+//! `steer-lag`: the steering valves' spools follow their command through a first-order lag.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// The lag of both steering valves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SteerLag {
+    /// Time constant, s.
+    pub time_constant_s: f64,
+}
+
+/// The spool's own dynamics, which the nominal machine takes as immediate (paper 3.2).
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "steer-lag",
+    block: Block::Steering,
+    meaning: "first-order lag of the steering valves",
+    source: "assumed: proportional valves reach 90 % within 0.1 to 0.3 s",
+    parameters: &[Parameter {
+        name: "time_constant_s",
+        neutral: 0.0,
+        tolerance: 0.03,
+        range: [0.0, 2.0],
+        slot: Slot::Whole(|effects| &mut effects.steering.lag.time_constant_s),
+    }],
+};

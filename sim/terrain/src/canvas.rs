@@ -22,7 +22,7 @@ impl Canvas {
     }
 
     /// Adds a height to every point.
-    pub(crate) fn add(&mut self, height_m: impl Fn(f64, f64) -> f64) {
+    pub(crate) fn add(&mut self, mut height_m: impl FnMut(f64, f64) -> f64) {
         let columns = self.columns;
         for row in 0..self.rows {
             let y_m = position(self.first[1], row);

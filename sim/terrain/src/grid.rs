@@ -73,6 +73,12 @@ impl Grid {
         self.first.map(|steps| steps as f64 / PER_M)
     }
 
+    /// How the ground goes on rising beyond the edge, along x and along y, m/m.
+    #[must_use]
+    pub const fn beyond(&self) -> [f64; 2] {
+        self.beyond
+    }
+
     /// All heights, m, row by row along x; the rows follow one another along y.
     #[must_use]
     pub fn heights_m(&self) -> &[f32] {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::{Grid, Minima, Nearest, Ramp};
+use crate::{Grid, Nearest, Ramp};
 
 /// Ground that the wheels stand on. Cheap to clone and to send to threads: heights are shared.
 ///

@@ -1,0 +1,251 @@
+//! Boulders: half ellipsoids set on the ground, strewn at random (paper 3.1).
+
+use std::f64::consts::PI;
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::Extent;
+use crate::canvas::Canvas;
+
+/// Most boulders of one layer.
+const COUNT_MAX: u32 = 100_000;
+/// How often a boulder is drawn again because it lies on the clear area.
+const DRAWS_MAX: u32 = 10_000;
+
+/// Boulders strewn evenly over the grid, but for a clear area where the machine starts.
+///
+/// Each boulder is drawn from a stream of its own: more boulders leave the first ones where they are.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Boulders {
+    /// Number of boulders; this or the density is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
+    /// Boulders a square metre, of the grid less the clear area.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_per_m2: Option<f64>,
+    /// Least and greatest half axis in plan, m; both axes of a boulder are drawn from it.
+    pub radius_m: [f64; 2],
+    /// Least and greatest height over the ground, m.
+    pub height_m: [f64; 2],
+    /// Where no boulder reaches; the machine at the start and a metre around it if left out.
+    #[serde(default = "start_area")]
+    pub clear: Extent,
+    /// Which boulders of all those.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// The machine reaches 8 m back from its front axle, 1.5 m ahead of it and 1.5 m to either side.
+const fn start_area() -> Extent {
+    Extent { x_m: [-9.0, 3.0], y_m: [-3.0, 3.0] }
+}
+
+/// One boulder: the upper half of an ellipsoid whose centre is on the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boulder {
+    /// Its centre, m.
+    pub centre_m: [f64; 2],
+    /// Its half axes in plan, m.
+    pub radius_m: [f64; 2],
+    /// Its height over the ground, m.
+    pub height_m: f64,
+    /// Direction of its first half axis: cosine and sine.
+    along: [f64; 2],
+}
+
+impl Boulder {
+    /// Height over the ground at a point, m.
+    #[must_use]
+    pub fn height_m(&self, x_m: f64, y_m: f64) -> f64 {
+        let (x, y) = (x_m - self.centre_m[0], y_m - self.centre_m[1]);
+        let [cos, sin] = self.along;
+        let (u, v) = (x * cos + y * sin, y * cos - x * sin);
+        let share = 1.0 - (u / self.radius_m[0]).powi(2) - (v / self.radius_m[1]).powi(2);
+        self.height_m * share.max(0.0).sqrt()
+    }
+
+    /// The square around it, whichever way it lies.
+    fn bounds(&self) -> Extent {
+        let reach_m = self.radius_m[0].max(self.radius_m[1]);
+        let [x_m, y_m] = self.centre_m.map(|m| [m - reach_m, m + reach_m]);
+        Extent { x_m, y_m }
+    }
+}
+
+impl Boulders {
+    /// The boulders as they lie in `extent`.
+    ///
+    /// Fewer than asked for only if the clear area leaves all but no room.
+    #[must_use]
+    pub fn placed(&self, extent: Extent) -> Vec<Boulder> {
+        (0..self.number(extent)).filter_map(|index| self.draw(extent, index)).collect()
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    fn number(&self, extent: Extent) -> u32 {
+        let free_m2 = area_m2(extent.x_m, extent.y_m)
+            - area_m2(
+                overlap(self.clear.x_m, extent.x_m),
+                overlap(self.clear.y_m, extent.y_m),
+            );
+        let by_density = self.density_per_m2.map(|density| (density * free_m2).round() as u32);
+        self.count.or(by_density).unwrap_or(0).min(COUNT_MAX)
+    }
+
+    fn draw(&self, extent: Extent, index: u32) -> Option<Boulder> {
+        let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
+        rng.set_stream(u64::from(index));
+        let mut between = |[low, high]: [f64; 2]| low + (high - low) * rng.random::<f64>();
+        let radius_m = [between(self.radius_m), between(self.radius_m)];
+        let height_m = between(self.height_m);
+        let (sin, cos) = libm::sincos(between([0.0, PI]));
+        (0..DRAWS_MAX)
+            .map(|_| {
+                let centre_m = [between(extent.x_m), between(extent.y_m)];
+                Boulder { centre_m, radius_m, height_m, along: [cos, sin] }
+            })
+            .find(|boulder| {
+                let Extent { x_m, y_m } = boulder.bounds();
+                let apart = |a: [f64; 2], b: [f64; 2]| a[1] < b[0] || b[1] < a[0];
+                apart(x_m, self.clear.x_m) || apart(y_m, self.clear.y_m)
+            })
+    }
+
+    /// Adds them to a canvas; where boulders overlap, the higher counts.
+    pub(crate) fn add_to(&self, canvas: &mut Canvas, extent: Extent) {
+        let mut top_m = vec![0.0_f64; canvas.len()];
+        for boulder in self.placed(extent) {
+            canvas.add_within(boulder.bounds(), |index, x_m, y_m| {
+                let before_m = top_m[index];
+                top_m[index] = before_m.max(boulder.height_m(x_m, y_m));
+                top_m[index] - before_m
+            });
+        }
+    }
+
+    /// Says what no boulders can be.
+    ///
+    /// # Errors
+    /// A sentence that names the key.
+    pub fn check(&self) -> Result<(), &'static str> {
+        match (self.count, self.density_per_m2) {
+            (Some(_), Some(_)) | (None, None) => {
+                return Err("give count or density_per_m2, one of the two");
+            }
+            (Some(count), None) if count > COUNT_MAX => {
+                return Err("count must be at most 100000");
+            }
+            (None, Some(density)) if !(0.0..=10.0).contains(&density) => {
+                return Err("density_per_m2 must be 0 to 10");
+            }
+            _ => {}
+        }
+        let between = |[low, high]: [f64; 2], from: f64, to: f64| from <= low && low <= high && high <= to;
+        if !between(self.radius_m, 0.1, 20.0) {
+            return Err("radius_m must be [least, greatest], 0.1 to 20 m");
+        }
+        if !between(self.height_m, 0.0, 5.0) {
+            return Err("height_m must be [least, greatest], 0 to 5 m");
+        }
+        if [self.clear.x_m, self.clear.y_m].iter().any(|[from, to]| !(from <= to)) {
+            return Err("clear must be x_m = [from, to], y_m = [from, to]");
+        }
+        Ok(())
+    }
+}
+
+fn area_m2(x_m: [f64; 2], y_m: [f64; 2]) -> f64 {
+    (x_m[1] - x_m[0]) * (y_m[1] - y_m[0])
+}
+
+/// What two stretches share; without length if nothing.
+fn overlap(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let from = a[0].max(b[0]);
+    [from, a[1].min(b[1]).max(from)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FOREST: Boulders = Boulders {
+        count: Some(200),
+        density_per_m2: None,
+        radius_m: [0.3, 0.9],
+        height_m: [0.1, 0.4],
+        clear: start_area(),
+        seed: 3,
+    };
+
+    fn grid(boulders: &Boulders) -> crate::Grid {
+        let mut canvas = Canvas::new(Extent::default());
+        boulders.add_to(&mut canvas, Extent::default());
+        canvas.into_grid([0.0; 2])
+    }
+
+    #[test]
+    fn heights_are_those_of_the_highest_ellipsoid() {
+        let boulders = FOREST.placed(Extent::default());
+        assert_eq!(boulders.len(), 200);
+        let grid = grid(&FOREST);
+        let ([columns, rows], [x0, y0]) = (grid.size(), grid.origin_m());
+        let mut raised = 0;
+        for row in (0..rows).step_by(3) {
+            for column in (0..columns).step_by(3) {
+                let (x, y) = (x0 + column as f64 * 0.1, y0 + row as f64 * 0.1);
+                let top = boulders.iter().map(|b| b.height_m(x, y)).fold(0.0, f64::max);
+                let height = f64::from(grid.vertex_m(column, row));
+                // A rim is as steep as a wall; there, 1e-12 m of position is 1e-6 m of height.
+                assert!((height - top).abs() < 2e-6, "{x} {y}: {height} {top}");
+                raised += usize::from(top > 0.0);
+            }
+        }
+        assert!(raised > 1000, "{raised}");
+    }
+
+    #[test]
+    fn an_ellipsoid_is_one() {
+        let boulder = Boulder {
+            centre_m: [1.0, 2.0],
+            radius_m: [0.8, 0.4],
+            height_m: 0.3,
+            along: [0.6, 0.8],
+        };
+        assert_eq!(boulder.height_m(1.0, 2.0), 0.3);
+        // Half-way out along either axis: 0.3 sqrt(3/4).
+        for (x, y) in [(1.24, 2.32), (0.84, 2.12)] {
+            assert!((boulder.height_m(x, y) - 0.3 * 0.75_f64.sqrt()).abs() < 1e-12);
+        }
+        assert_eq!(boulder.height_m(1.0 + 0.49, 2.0 + 0.65), 0.0);
+    }
+
+    #[test]
+    fn the_start_stays_clear_and_more_boulders_move_none() {
+        let few = FOREST.placed(Extent::default());
+        let many = Boulders { count: Some(300), ..FOREST }.placed(Extent::default());
+        assert_eq!(few[..], many[..200]);
+        let grid = grid(&Boulders { count: Some(2000), ..FOREST });
+        for step in 0..=60 {
+            for across in [-3.0, -1.0, 0.0, 2.0, 3.0] {
+                assert_eq!(grid.height_m(-9.0 + 0.2 * f64::from(step), across), 0.0);
+            }
+        }
+        let other = Boulders { seed: 4, ..FOREST }.placed(Extent::default());
+        assert!(few.iter().zip(&other).all(|(a, b)| a != b));
+    }
+
+    #[test]
+    fn a_density_counts_the_free_area() {
+        let strewn = Boulders { count: None, density_per_m2: Some(0.1), ..FOREST };
+        // 60 by 40 m less the 12 by 6 m of the start.
+        assert_eq!(strewn.placed(Extent::default()).len(), 233);
+        // No room at all: none, and it ends.
+        let all = Boulders { clear: Extent { x_m: [-99.0, 99.0], y_m: [-99.0, 99.0] }, ..FOREST };
+        assert_eq!(Boulders { count: Some(5), ..all }.placed(Extent::default()), []);
+        let twice = Boulders { density_per_m2: Some(0.1), ..FOREST };
+        assert_eq!(twice.check(), Err("give count or density_per_m2, one of the two"));
+    }
+}

@@ -5,6 +5,7 @@
 
 mod bench;
 mod guest;
+mod second_engine;
 mod test;
 mod tidy;
 mod vcan;
@@ -35,6 +36,7 @@ enum Chore {
     /// Build the guest's kernel, unless it is kept already, and print its path
     GuestKernel(vcan::Cache),
     Bench(bench::Bench),
+    SecondEngine(second_engine::SecondEngine),
 }
 
 fn main() -> ExitCode {
@@ -68,5 +70,6 @@ fn perform(chore: Chore) -> Outcome<u8> {
             Ok(0)
         }
         Chore::Bench(bench) => bench.execute(&workspace),
+        Chore::SecondEngine(second) => second.execute(&workspace),
     }
 }

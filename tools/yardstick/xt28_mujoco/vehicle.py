@@ -1,0 +1,126 @@
+"""The machine on MuJoCo, advanced step by step: laws in, `mj_step`, observations out."""
+
+import math
+import time
+
+import mujoco
+import numpy as np
+
+from .laws import ArmLocks, Drive, JointLocks, rolling_drag_nm
+from .machine import REFERENCE_STROKE_M, WHEELS, Machine
+from .manoeuvre import Actuation
+from .model import Settings, build
+from .terrain import Grid
+
+
+class Vehicle:
+    """The nominal machine with its front axle at the origin, heading east."""
+
+    def __init__(self, machine: Machine, settings: Settings, ground: Grid | None, stroke_m: float):
+        self._machine = machine
+        self.model = build(machine, settings, ground)
+        self.data = mujoco.MjData(self.model)
+        self._arms = ArmLocks(machine, stroke_m)
+        self._joints = JointLocks(machine)
+        self._drive = Drive(machine)
+        self._index()
+        self._place(stroke_m)
+        self.ground_force_n = np.zeros(len(WHEELS))
+        self.step_ns = 0
+
+    def _index(self) -> None:
+        model = self.model
+        hinges = {
+            kind: [model.joint(f"{kind}_{name}").id for name in names]
+            for kind, names in (("arm", WHEELS), ("wheel", WHEELS), ("joint", (1, 2)))
+        }
+        self._hinge = {kind: np.array(ids) for kind, ids in hinges.items()}
+        self._at = {kind: model.jnt_qposadr[ids] for kind, ids in self._hinge.items()}
+        self._dof = {kind: model.jnt_dofadr[ids] for kind, ids in self._hinge.items()}
+        self._wheel_bodies = [model.body(f"wheel_{wheel}").id for wheel in WHEELS]
+        geoms = [model.geom(f"wheel_{wheel}").id for wheel in WHEELS]
+        self._wheel_of_geom = {geom: index for index, geom in enumerate(geoms)}
+        self._front = model.body("front").id
+        stiffness_at, damping_at = self._hinge["joint"], self._dof["joint"]
+        model.jnt_stiffness[stiffness_at] = self._joints.stiffness_nm
+        model.dof_damping[damping_at] = self._joints.damping_nms
+
+    def _place(self, stroke_m: float) -> None:
+        """Arms at their stroke, all wheels just touching level ground."""
+        linkage = self._machine.linkage
+        reference = linkage.angle_rad(REFERENCE_STROKE_M)
+        angle = linkage.angle_rad(stroke_m)
+        self.data.qpos[self._at["arm"]] = angle - reference
+        self.data.qpos[2] = linkage.drop_m(angle) - linkage.drop_m(reference)
+        mujoco.mj_forward(self.model, self.data)
+
+    def step(self, actuation: Actuation) -> None:
+        """One time step under constant actuation."""
+        dt_s = self.model.opt.timestep
+        self._move_arms(actuation, dt_s)
+        self._turn_joints(actuation, dt_s)
+        self._turn_wheels(actuation, dt_s)
+        begun = time.thread_time_ns()
+        mujoco.mj_step(self.model, self.data)
+        self.step_ns += time.thread_time_ns() - begun
+        self.ground_force_n = self._ground_force_n()
+
+    def _move_arms(self, actuation: Actuation, dt_s: float) -> None:
+        model, angles = self.model, self.data.qpos[self._at["arm"]]
+        for wheel, angle in enumerate(angles):
+            stiffness, damping, rest = self._arms.step(
+                wheel, actuation.arm_opening[wheel], float(angle), dt_s
+            )
+            model.jnt_stiffness[self._hinge["arm"][wheel]] = stiffness
+            model.dof_damping[self._dof["arm"][wheel]] = damping
+            model.qpos_spring[self._at["arm"][wheel]] = rest
+
+    def _turn_joints(self, actuation: Actuation, dt_s: float) -> None:
+        for joint, (at, dof) in enumerate(zip(self._at["joint"], self._dof["joint"], strict=True)):
+            angle, rate = float(self.data.qpos[at]), float(self.data.qvel[dof])
+            opening = actuation.steer_opening[joint]
+            self.model.qpos_spring[at] = self._joints.step(joint, opening, angle, rate, dt_s)
+
+    def _turn_wheels(self, actuation: Actuation, dt_s: float) -> None:
+        data, dofs = self.data, self._dof["wheel"]
+        rates = data.qvel[dofs]
+        # Along the hinge: the reaction is on the arm.
+        data.qfrc_applied[dofs] = self._drive.step(
+            actuation.pump, actuation.motor, actuation.engine_rpm, rates, dt_s
+        )
+        for wheel, body in enumerate(self._wheel_bodies):
+            drag_nm = rolling_drag_nm(
+                self._machine, self.ground_force_n[wheel], float(rates[wheel])
+            )
+            # From the ground: no reaction on the machine.
+            axle = data.xaxis[self._hinge["wheel"][wheel]]
+            data.xfrc_applied[body, 3:] = drag_nm * axle
+
+    def _ground_force_n(self) -> np.ndarray:
+        """Vertical part of the normal forces of the step just taken."""
+        force, wrench = np.zeros(len(WHEELS)), np.zeros(6)
+        for index, contact in enumerate(self.data.contact):
+            wheel = self._wheel_of_geom.get(int(contact.geom[1]))
+            up = 1.0
+            if wheel is None:
+                wheel, up = self._wheel_of_geom[int(contact.geom[0])], -1.0
+            mujoco.mj_contactForce(self.model, self.data, index, wrench)
+            force[wheel] += up * contact.frame[2] * wrench[0]
+        return force
+
+    def observe(self) -> list[float]:
+        """Position, yaw, roll, pitch, joints, strokes, wheel speeds, in the order of `COLUMNS`."""
+        turn = np.empty(9)
+        # Of the joint coordinates, not of xmat: that one is from before the step.
+        mujoco.mju_quat2Mat(turn, self.data.qpos[3:7])
+        x, y, z = turn.reshape(3, 3).T
+        strokes = [self._arms.stroke_m(float(a)) for a in self.data.qpos[self._at["arm"]]]
+        return [
+            *self.data.qpos[:3].tolist(),
+            math.atan2(x[1], x[0]),
+            -math.atan2(y[2], z[2]),
+            math.asin(x[2]),
+            *self.data.qpos[self._at["joint"]].tolist(),
+            *strokes,
+            *self.data.qvel[self._dof["wheel"]].tolist(),
+        ]

@@ -11,6 +11,8 @@ mod catalogue;
 mod delay_line;
 mod drive;
 mod effect;
+mod first_order;
+mod lag;
 mod overlay;
 mod scope;
 mod sensors;
@@ -25,6 +27,8 @@ pub use drive::{
     DriveEffects, DriveLag, EngineDroop, RollingResistance, StandstillDrag, ThrottleDelay,
 };
 pub use effect::{Block, Effect, Parameter, Slot};
+pub use first_order::first_order;
+pub use lag::Lag;
 pub use overlay::{Entry, Overlay, OverlayError};
 pub use scope::{Scope, UnknownScope};
 pub use sensors::{

@@ -3,8 +3,8 @@
 use xt28_machine::{GRAVITY_M_S2, Linkage, Machine, PerWheel, Wheel};
 
 use crate::blocks::{
-    Cylinder, CylinderInput, CylinderState, Drive, DriveInput, DriveState, Steering, SteeringInput,
-    SteeringState, Valve, ValveState,
+    Cylinder, CylinderInput, CylinderState, Drive, DriveInput, DriveOutput, DriveState, Steering,
+    SteeringInput, SteeringState, Valve, ValveState,
 };
 use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Actuation, Effects, REFERENCE_STROKE_M, VehicleState};
@@ -23,7 +23,7 @@ pub(crate) struct Actuators {
     cylinder: Cylinder,
     steering: Steering,
     drive: Drive,
-    rolling_resistance_m: f64,
+    rolling_resistance_m: PerWheel<f64>,
     valve_states: PerWheel<ValveState>,
     cylinders: PerWheel<CylinderState>,
     joints: [SteeringState; 2],
@@ -42,6 +42,8 @@ impl Actuators {
         let linkage = machine.linkage();
         let weight_n = machine.mass_kg() * GRAVITY_M_S2 / 6.0;
         let valves = effects.arms.map(Valve::new);
+        let steering = Steering::new(machine, &effects.steering);
+        let drive = Drive::new(machine, effects);
         Self {
             linkage,
             reference_rad: linkage.at_stroke(REFERENCE_STROKE_M).angle_rad,
@@ -50,11 +52,14 @@ impl Actuators {
             cylinders: stroke_m
                 .map(|s| cylinder.settled(s, weight_n / linkage.at_stroke(s).force_ratio)),
             cylinder,
-            steering: Steering::new(machine),
-            drive: Drive::new(machine),
-            rolling_resistance_m: machine.wheels.rolling_resistance * machine.wheels.radius_m,
-            joints: [SteeringState::default(); 2],
-            shaft: DriveState::default(),
+            joints: [steering.straight(dt_s), steering.straight(dt_s)],
+            steering,
+            shaft: drive.at_rest(dt_s),
+            drive,
+            rolling_resistance_m: PerWheel::from_fn(|wheel| {
+                let added = effects.wheels[wheel].rolling_resistance.added;
+                (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m
+            }),
         }
     }
 
@@ -68,9 +73,18 @@ impl Actuators {
     ) -> Loads {
         let arm = self.move_arms(actuation, motion, dt_s);
         let joint = self.turn_joints(actuation, motion, dt_s);
-        let (drive_nm, drag_nm) = self.drive_wheels(actuation, motion, state, dt_s);
-        let hold_nm = if actuation.brake_released { 0.0 } else { BRAKE_TORQUE_NM };
-        Loads { arm, joint, drive_nm, drag_nm, hold_nm: PerWheel::splat(hold_nm) }
+        let drive = self.drive_wheels(actuation, motion, dt_s);
+        state.wheel_torque_nm = drive.wheel_torque_nm;
+        state.pump_pressure_pa = drive.pump_pressure_pa;
+        state.engine_speed_rpm = drive.engine_speed_rpm;
+        let brake_nm = if actuation.brake_released { 0.0 } else { BRAKE_TORQUE_NM };
+        Loads {
+            arm,
+            joint,
+            drive_nm: drive.wheel_torque_nm,
+            drag_nm: self.rolling_drag_nm(motion),
+            hold_nm: drive.hold_nm.map(|nm| nm + brake_nm),
+        }
     }
 
     /// Writes what the cylinders show in this motion.
@@ -133,7 +147,7 @@ impl Actuators {
                 angle_rad: motion.joint[i].angle_rad,
                 rate_rad_s: motion.joint[i].rate_rad_s,
             };
-            self.joints[i] = self.steering.step(self.joints[i], &input, dt_s);
+            self.steering.step(&mut self.joints[i], &input, dt_s);
             HingeSpring {
                 stiffness_nm: self.steering.stiffness_nm(),
                 damping_nms: self.steering.damping_nms(),
@@ -142,29 +156,21 @@ impl Actuators {
         })
     }
 
-    fn drive_wheels(
-        &mut self,
-        actuation: &Actuation,
-        motion: &Motion,
-        state: &mut VehicleState,
-        dt_s: f64,
-    ) -> (PerWheel<f64>, PerWheel<f64>) {
+    fn drive_wheels(&mut self, actuation: &Actuation, motion: &Motion, dt_s: f64) -> DriveOutput {
         let input = DriveInput {
             pump_displacement: actuation.pump_displacement,
             motor_displacement: actuation.motor_displacement,
             engine_speed_rpm: actuation.engine_speed_rpm,
             wheel_speed_rad_s: motion.wheel_rate_rad_s,
         };
-        let (shaft, out) = self.drive.step(self.shaft, &input, dt_s);
-        self.shaft = shaft;
-        state.wheel_torque_nm = out.wheel_torque_nm;
-        state.pump_pressure_pa = out.pump_pressure_pa;
-        state.engine_speed_rpm = actuation.engine_speed_rpm;
-        let drag_nm = PerWheel::from_fn(|wheel| {
+        self.drive.step(&mut self.shaft, &input, dt_s)
+    }
+
+    fn rolling_drag_nm(&self, motion: &Motion) -> PerWheel<f64> {
+        PerWheel::from_fn(|wheel| {
             let normal_n = motion.ground_force_n[wheel].max(0.0);
             let fade = (motion.wheel_rate_rad_s[wheel] / DRAG_FADE_RAD_S).tanh();
-            -self.rolling_resistance_m * normal_n * fade
-        });
-        (out.wheel_torque_nm, drag_nm)
+            -self.rolling_resistance_m[wheel] * normal_n * fade
+        })
     }
 }

@@ -12,11 +12,14 @@ mod delay_line;
 mod drive;
 mod effect;
 mod first_order;
+mod ground;
 mod lag;
 mod overlay;
+mod payload;
 mod scope;
 mod sensors;
 mod steering;
+mod tyres;
 mod values;
 
 pub use arms::{ArmDelay, ArmEffects};
@@ -28,8 +31,10 @@ pub use drive::{
 };
 pub use effect::{Block, Effect, Parameter, Slot};
 pub use first_order::first_order;
+pub use ground::TerrainSlope;
 pub use lag::Lag;
 pub use overlay::{Entry, Overlay, OverlayError};
+pub use payload::{ComShift, MassEffects, Payload};
 pub use scope::{Scope, UnknownScope};
 pub use sensors::{
     GnssLatency, GnssLeverArm, ImuOffset, PressureBias, PressureScale, SensorEffects, StrokeBias,
@@ -38,4 +43,5 @@ pub use sensors::{
 pub use steering::{
     RearFollowerLag, SteerBacklash, SteerDelay, SteerGain, SteerLag, SteerRate, SteeringEffects,
 };
+pub use tyres::{SlipperyGround, SoftTyre};
 pub use values::{Effects, WheelEffects};

@@ -2,8 +2,8 @@
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{
-    Actuation, Cylinder, CylinderInput, Drive, DriveInput, DriveState, Plant, Ramp, STEP, Steering,
-    SteeringInput, SteeringState, Terrain, Vehicle, VehicleState,
+    Actuation, Cylinder, CylinderInput, Drive, DriveInput, Effects, Plant, Ramp, STEP, Steering,
+    SteeringInput, Terrain, Vehicle, VehicleState,
 };
 
 fn idle() -> Actuation {
@@ -143,13 +143,15 @@ fn twice_the_same_is_the_same_to_the_bit() {
 fn blocks_alone_reproduce_the_whole() {
     let machine = Machine::xt28();
     let mut vehicle = Vehicle::new(&machine, &Terrain::Flat, PerWheel::splat(0.17));
-    let (cylinder, steering) = (Cylinder::new(&machine), Steering::new(&machine));
-    let drive = Drive::new(&machine);
+    let effects = Effects::default();
+    let (cylinder, steering) =
+        (Cylinder::new(&machine), Steering::new(&machine, &effects.steering));
+    let drive = Drive::new(&machine, &effects);
     let weight_n = machine.mass_kg() * GRAVITY_M_S2 / 6.0;
     let ratio = machine.linkage().at_stroke(0.17).force_ratio;
     let mut rest = PerWheel::splat(cylinder.settled(0.17, weight_n / ratio));
-    let (mut joints, mut shaft) = ([SteeringState::default(); 2], DriveState::default());
     let dt_s = STEP.as_secs_f64();
+    let (mut joints, mut shaft) = ([(); 2].map(|()| steering.straight(dt_s)), drive.at_rest(dt_s));
     for step in 0..2000 {
         let t = f64::from(step) * dt_s;
         let actuation = Actuation {
@@ -177,7 +179,7 @@ fn blocks_alone_reproduce_the_whole() {
                 angle_rad: before.joint_rad[i],
                 rate_rad_s: before.joint_rate_rad_s[i],
             };
-            *joint = steering.step(*joint, &input, dt_s);
+            steering.step(joint, &input, dt_s);
             // The joint follows its rest to what the torque between them twists.
             assert!((joint.rest_rad - after.joint_rad[i]).abs() < 0.03);
         }
@@ -187,8 +189,7 @@ fn blocks_alone_reproduce_the_whole() {
             engine_speed_rpm: actuation.engine_speed_rpm,
             wheel_speed_rad_s: before.wheel_speed_rad_s,
         };
-        let (state, out) = drive.step(shaft, &input, dt_s);
-        shaft = state;
+        let out = drive.step(&mut shaft, &input, dt_s);
         assert_eq!(out.wheel_torque_nm, after.wheel_torque_nm);
         assert_eq!(out.pump_pressure_pa, after.pump_pressure_pa);
     }

@@ -6,6 +6,8 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
+use crate::effects::{DelayLine, DriveEffects, Effects, StandstillDrag, first_order};
+
 /// Speed ratio of the sequence law: full displacement of pump and motors is a third of full speed.
 const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 /// Charge pressure of the closed circuits, Pa (assumed).
@@ -28,11 +30,16 @@ pub struct Drive {
     wheel_torque_max_nm: f64,
     circuit_gain_nms: f64,
     mean_integral_nm: f64,
+    effects: DriveEffects,
+    standstill_drag: PerWheel<StandstillDrag>,
 }
 
 /// What the transmission remembers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveState {
+    asked_rad_s: [DelayLine; 2],
+    target_rad_s: [f64; 2],
+    felt_power_w: f64,
     /// Integral part of the torque that holds the mean speed, Nm a wheel.
     pub mean_torque_nm: f64,
 }
@@ -44,7 +51,7 @@ pub struct DriveInput {
     pub pump_displacement: [f64; 2],
     /// Displacement of each wheel motor, 0 to 1.
     pub motor_displacement: PerWheel<f64>,
-    /// Engine speed, rpm.
+    /// Speed the engine's governor holds, rpm.
     pub engine_speed_rpm: f64,
     /// Speed of each wheel about its axle, rad/s; forward > 0.
     pub wheel_speed_rad_s: PerWheel<f64>,
@@ -59,6 +66,10 @@ pub struct DriveOutput {
     pub pump_pressure_pa: [f64; 4],
     /// Power taken from the engine, W.
     pub power_w: f64,
+    /// Speed of the engine under that load, rpm.
+    pub engine_speed_rpm: f64,
+    /// Torque with which each motor holds its wheel at rest, Nm.
+    pub hold_nm: PerWheel<f64>,
 }
 
 impl Drive {
@@ -67,7 +78,7 @@ impl Drive {
     /// # Panics
     /// For circuits that no machine file can have: reading one refuses them.
     #[must_use]
-    pub fn new(machine: &Machine) -> Self {
+    pub fn new(machine: &Machine, effects: &Effects) -> Self {
         let w = &machine.wheels;
         Self {
             circuits: machine.circuits().expect("checked when the machine was read"),
@@ -78,22 +89,29 @@ impl Drive {
             wheel_torque_max_nm: w.torque_max_nm,
             circuit_gain_nms: machine.vehicle.circuit_gain_nms,
             mean_integral_nm: machine.vehicle.mean_integral_nm,
+            effects: effects.drive,
+            standstill_drag: PerWheel::from_fn(|wheel| effects.wheels[wheel].standstill_drag),
         }
     }
 
-    /// Torques and pressures now, and the state `dt_s` s later.
+    /// A transmission at rest, to be stepped every `dt_s` s.
     #[must_use]
-    pub fn step(
-        &self,
-        state: DriveState,
-        input: &DriveInput,
-        dt_s: f64,
-    ) -> (DriveState, DriveOutput) {
-        let targets = [0, 1].map(|c| self.target_rad_s(c, input));
+    pub fn at_rest(&self, dt_s: f64) -> DriveState {
+        let line = DelayLine::new(self.effects.throttle_delay.delay_s, dt_s, 0.0);
+        DriveState { asked_rad_s: [line.clone(), line], ..DriveState::default() }
+    }
+
+    /// Torques and pressures now; the state goes on by `dt_s` s.
+    pub fn step(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> DriveOutput {
+        let droop = &self.effects.engine_droop;
+        let governed_rpm = input.engine_speed_rpm;
+        let engine_speed_rpm = governed_rpm * droop.speed_share(state.felt_power_w);
+        let input = &DriveInput { engine_speed_rpm, ..*input };
+        let targets = self.targets_rad_s(state, input, dt_s);
         let means = [0, 1].map(|c| self.mean_rad_s(c, input));
         let mean_error = (targets[0] + targets[1] - means[0] - means[1]) / 2.0;
 
-        let mut out = DriveOutput::default();
+        let mut out = DriveOutput { engine_speed_rpm, ..DriveOutput::default() };
         let mut circuit_nm = [0.0; 2];
         for c in 0..2 {
             let own_nm = self.circuit_gain_nms * (targets[c] - means[c]);
@@ -105,11 +123,28 @@ impl Drive {
         for (c, circuit_nm) in circuit_nm.into_iter().enumerate() {
             let above =
                 PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / self.wheel_torque_max_nm;
+            for &wheel in &self.circuits[c] {
+                out.hold_nm[wheel] = self.standstill_drag[wheel].holds_nm(targets[c]);
+            }
             let forward = usize::from(circuit_nm >= 0.0);
             out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
-        (self.integrate(state, mean_error, &circuit_nm, limit, dt_s), out)
+        self.integrate(state, mean_error, &circuit_nm, limit, dt_s);
+        state.felt_power_w = droop.felt_w(state.felt_power_w, out.power_w, dt_s);
+        out
+    }
+
+    /// What each circuit is to do, once displacement has become speed, rad/s.
+    fn targets_rad_s(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> [f64; 2] {
+        let e = &self.effects;
+        for c in 0..2 {
+            let asked = self.target_rad_s(c, input);
+            let arrived = state.asked_rad_s[c].step(asked, e.throttle_delay.delay_s, dt_s);
+            state.target_rad_s[c] =
+                first_order(state.target_rad_s[c], arrived, e.lag.time_constant_s, dt_s);
+        }
+        state.target_rad_s
     }
 
     /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
@@ -160,7 +195,8 @@ impl Drive {
         let wanted_w: f64 =
             out.wheel_torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
         let shaft_rad_s = input.engine_speed_rpm * core::f64::consts::TAU / 60.0;
-        let most_w = self.engine_power_w.min(self.engine_torque_max_nm * shaft_rad_s);
+        let most_w = (self.engine_power_w * self.effects.engine_droop.power_factor)
+            .min(self.engine_torque_max_nm * shaft_rad_s);
         let limit = if wanted_w > most_w { most_w / wanted_w } else { 1.0 };
         out.wheel_torque_nm = out.wheel_torque_nm.map(|nm| nm * limit);
         out.power_w = wanted_w * limit;
@@ -170,25 +206,36 @@ impl Drive {
     /// Integrates the mean's error unless that would wind up against a limit.
     fn integrate(
         &self,
-        state: DriveState,
+        state: &mut DriveState,
         mean_error: f64,
         circuit_nm: &[f64; 2],
         limit: f64,
         dt_s: f64,
-    ) -> DriveState {
+    ) {
         let max = self.wheel_torque_max_nm;
         let saturated = limit < 1.0 || circuit_nm.iter().any(|nm| nm.abs() >= max);
         if saturated && mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0 {
-            return state;
+            return;
         }
         let torque = state.mean_torque_nm + self.mean_integral_nm * mean_error * dt_s;
-        DriveState { mean_torque_nm: torque.clamp(-max, max) }
+        state.mean_torque_nm = torque.clamp(-max, max);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{DriveLag, EngineDroop, ThrottleDelay};
+
+    const DT_S: f64 = 0.005;
+
+    fn nominal() -> Drive {
+        Drive::new(&Machine::xt28(), &Effects::default())
+    }
+
+    fn with(drive: DriveEffects) -> Drive {
+        Drive::new(&Machine::xt28(), &Effects { drive, ..Effects::default() })
+    }
 
     fn input(pump: f64, speed_rad_s: f64) -> DriveInput {
         DriveInput {
@@ -202,20 +249,19 @@ mod tests {
     #[test]
     fn full_pump_and_motor_ask_for_a_third_of_full_speed() {
         let machine = Machine::xt28();
-        let drive = Drive::new(&machine);
         let third = machine.drive.speed_full_m_s / machine.wheels.radius_m / 3.0;
-        let (state, out) = drive.step(DriveState::default(), &input(1.0, third), 0.005);
+        let mut state = DriveState::default();
+        let out = nominal().step(&mut state, &input(1.0, third), DT_S);
         assert!(out.wheel_torque_nm.0.iter().all(|nm| nm.abs() < 1e-6));
         assert!(state.mean_torque_nm.abs() < 1e-9);
     }
 
     #[test]
     fn the_motors_of_a_circuit_push_alike_however_fast_they_turn() {
-        let drive = Drive::new(&Machine::xt28());
         let mut input = input(1.0, 0.5);
         input.wheel_speed_rad_s[Wheel::Fr] = 0.6;
         input.wheel_speed_rad_s[Wheel::Bl] = 0.4;
-        let (_, out) = drive.step(DriveState::default(), &input, 0.005);
+        let out = nominal().step(&mut DriveState::default(), &input, DT_S);
         assert!((out.wheel_torque_nm[Wheel::Fr] - out.wheel_torque_nm[Wheel::Ml]).abs() < 1e-9);
         assert!((out.wheel_torque_nm[Wheel::Fr] - out.wheel_torque_nm[Wheel::Bl]).abs() < 1e-9);
     }
@@ -223,15 +269,73 @@ mod tests {
     #[test]
     fn neither_engine_nor_motors_are_overdrawn() {
         let machine = Machine::xt28();
-        let drive = Drive::new(&machine);
-        let mut state = DriveState::default();
-        for _ in 0..2000 {
-            let (next, out) = drive.step(state, &input(1.0, 0.6), 0.005);
-            assert!(out.power_w <= machine.drive.engine_power_w + 1e-6);
-            for nm in out.wheel_torque_nm.0 {
-                assert!(nm.abs() <= machine.wheels.torque_max_nm);
+        for power_factor in [1.0, 0.05] {
+            let engine_droop = EngineDroop { power_factor, ..EngineDroop::default() };
+            let drive = with(DriveEffects { engine_droop, ..DriveEffects::default() });
+            let mut state = drive.at_rest(DT_S);
+            for _ in 0..2000 {
+                let out = drive.step(&mut state, &input(1.0, 0.6), DT_S);
+                assert!(out.power_w <= machine.drive.engine_power_w * power_factor + 1e-6);
+                for nm in out.wheel_torque_nm.0 {
+                    assert!(nm.abs() <= machine.wheels.torque_max_nm);
+                }
             }
-            state = next;
         }
+    }
+
+    /// Torque asked of a wheel in each step after the pump opened, wheels held.
+    fn torque_nm(drive: &Drive, steps: usize) -> Vec<f64> {
+        let mut state = drive.at_rest(DT_S);
+        (0..steps)
+            .map(|_| drive.step(&mut state, &input(0.1, 0.0), DT_S).wheel_torque_nm[Wheel::Fr])
+            .collect()
+    }
+
+    #[test]
+    fn a_delay_comes_before_the_first_torque() {
+        let throttle_delay = ThrottleDelay { delay_s: 0.3 };
+        let late = with(DriveEffects { throttle_delay, ..DriveEffects::default() });
+        let (prompt, late) = (torque_nm(&nominal(), 100), torque_nm(&late, 160));
+        assert!(late[..60].iter().all(|nm| *nm == 0.0));
+        assert_eq!(prompt, late[60..]);
+    }
+
+    #[test]
+    fn a_lag_lets_the_speed_come_slowly() {
+        let lag = DriveLag { time_constant_s: 0.4 };
+        let drive = with(DriveEffects { lag, ..DriveEffects::default() });
+        let mut state = drive.at_rest(DT_S);
+        let mut after = |steps| {
+            for _ in 0..steps {
+                drive.step(&mut state, &input(0.1, 0.0), DT_S);
+            }
+            state.target_rad_s[0]
+        };
+        assert!((after(80) / after(2000) - 0.632).abs() < 1e-3);
+    }
+
+    #[test]
+    fn droop_takes_speed_by_power() {
+        let engine_droop = EngineDroop { droop_per_w: 5.0e-6, power_factor: 1.0 };
+        let drive = with(DriveEffects { engine_droop, ..DriveEffects::default() });
+        let mut state = drive.at_rest(DT_S);
+        let mut out = DriveOutput::default();
+        for _ in 0..2000 {
+            out = drive.step(&mut state, &input(1.0, 0.3), DT_S);
+        }
+        let wanted_rpm = 1200.0 * (1.0 - 5.0e-6 * out.power_w);
+        assert!(out.power_w > 5_000.0);
+        assert!((out.engine_speed_rpm - wanted_rpm).abs() < 0.5, "{}", out.engine_speed_rpm);
+    }
+
+    #[test]
+    fn motors_hold_where_told_and_only_at_rest() {
+        let mut effects = Effects::default();
+        effects.wheels[Wheel::Mr].standstill_drag.torque_nm = 3000.0;
+        let drive = Drive::new(&Machine::xt28(), &effects);
+        let hold = |pump| drive.step(&mut drive.at_rest(DT_S), &input(pump, 0.0), DT_S).hold_nm;
+        assert_eq!(hold(0.0)[Wheel::Mr], 3000.0);
+        assert_eq!(hold(0.0).sum(), 3000.0);
+        assert_eq!(hold(0.5).sum(), 0.0);
     }
 }

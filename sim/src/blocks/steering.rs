@@ -6,6 +6,8 @@
 
 use xt28_machine::Machine;
 
+use crate::effects::{DelayLine, SteeringEffects, first_order};
+
 /// Parameters of one articulation joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steering {
@@ -14,11 +16,15 @@ pub struct Steering {
     torque_max_nm: f64,
     stiffness_nm: f64,
     damping_nms: f64,
+    effects: SteeringEffects,
 }
 
 /// What a joint remembers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteeringState {
+    commands: DelayLine,
+    spool: f64,
+    oil_rad: f64,
     /// Angle at which the oil makes no torque, rad; left > 0.
     pub rest_rad: f64,
 }
@@ -26,7 +32,7 @@ pub struct SteeringState {
 /// What acts on a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteeringInput {
-    /// Valve opening, -1 (right) to 1 (left).
+    /// Valve opening asked for, -1 (right) to 1 (left).
     pub opening: f64,
     /// Joint angle, rad; left > 0.
     pub angle_rad: f64,
@@ -37,7 +43,7 @@ pub struct SteeringInput {
 impl Steering {
     /// A joint of this machine; front and rear are alike.
     #[must_use]
-    pub const fn new(machine: &Machine) -> Self {
+    pub const fn new(machine: &Machine, effects: &SteeringEffects) -> Self {
         let (a, v) = (&machine.articulation, &machine.vehicle);
         Self {
             rate_max_rad_s: a.rate_max_deg_s.to_radians(),
@@ -45,23 +51,32 @@ impl Steering {
             torque_max_nm: a.torque_max_nm,
             stiffness_nm: v.joint_stiffness_nm,
             damping_nms: v.joint_damping_nms,
+            effects: *effects,
         }
+    }
+
+    /// A straight joint with its valve closed, to be stepped every `dt_s` s.
+    #[must_use]
+    pub fn straight(&self, dt_s: f64) -> SteeringState {
+        let commands = DelayLine::new(self.effects.delay.delay_s, dt_s, 0.0);
+        SteeringState { commands, ..SteeringState::default() }
     }
 
     /// Turns the rest angle over `dt_s` s. The relief valve lets the rest go no further from the
     /// joint than the largest torque twists it.
-    #[must_use]
-    pub fn step(&self, state: SteeringState, input: &SteeringInput, dt_s: f64) -> SteeringState {
-        let opening = input.opening.clamp(-1.0, 1.0);
-        let rest = state.rest_rad + opening * self.rate_max_rad_s * dt_s;
-        let twist = self.torque_max_nm / self.stiffness_nm;
+    pub fn step(&self, state: &mut SteeringState, input: &SteeringInput, dt_s: f64) {
+        let e = &self.effects;
+        let asked = input.opening.clamp(-1.0, 1.0);
+        let arrived = state.commands.step(asked, e.delay.delay_s, dt_s);
+        state.spool = first_order(state.spool, arrived, e.lag.time_constant_s, dt_s);
+        let rate_rad_s = state.spool * self.rate_max_rad_s * e.rate.factor;
+        let reach = self.torque_max_nm / self.stiffness_nm + 0.5 * e.backlash.width_rad;
         // Where the joint will be: a limit around where it was would give way to its own motion.
         let angle = input.angle_rad + input.rate_rad_s * dt_s;
-        SteeringState {
-            rest_rad: rest
-                .clamp(-self.angle_max_rad, self.angle_max_rad)
-                .clamp(angle - twist, angle + twist),
-        }
+        state.oil_rad = (state.oil_rad + rate_rad_s * dt_s)
+            .clamp(-self.angle_max_rad, self.angle_max_rad)
+            .clamp(angle - reach, angle + reach);
+        state.rest_rad = e.backlash.held_rad(state.rest_rad, state.oil_rad);
     }
 
     /// Stiffness of the held joint, Nm/rad.
@@ -80,36 +95,82 @@ impl Steering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{SteerBacklash, SteerDelay, SteerLag, SteerRate};
+
+    const DT_S: f64 = 0.005;
+
+    fn steering(effects: SteeringEffects) -> Steering {
+        Steering::new(&Machine::xt28(), &effects)
+    }
+
+    /// Rest angle after each step of a joint that follows its rest.
+    fn follow(effects: SteeringEffects, openings: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let steering = steering(effects);
+        let mut state = steering.straight(DT_S);
+        let step = |opening| {
+            let angle_rad = state.rest_rad;
+            let input = SteeringInput { opening, angle_rad, rate_rad_s: 0.0 };
+            steering.step(&mut state, &input, DT_S);
+            state.rest_rad
+        };
+        openings.into_iter().map(step).collect()
+    }
 
     #[test]
     fn a_full_valve_turns_ten_degrees_a_second_up_to_the_stop() {
-        let steering = Steering::new(&Machine::xt28());
-        let mut state = SteeringState::default();
-        for _ in 0..200 {
-            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad, rate_rad_s: 0.0 };
-            state = steering.step(state, &input, 0.005);
-        }
-        assert!((state.rest_rad.to_degrees() - 10.0).abs() < 1e-9);
-        for _ in 0..1000 {
-            let input = SteeringInput { opening: 1.0, angle_rad: state.rest_rad, rate_rad_s: 0.0 };
-            state = steering.step(state, &input, 0.005);
-        }
-        assert!((state.rest_rad.to_degrees() - 25.0).abs() < 1e-9);
+        let rest = follow(SteeringEffects::default(), [1.0; 1200]);
+        assert!((rest[199].to_degrees() - 10.0).abs() < 1e-9);
+        assert!((rest[1199].to_degrees() - 25.0).abs() < 1e-9);
     }
 
     #[test]
     fn a_blocked_joint_takes_no_more_than_its_torque() {
         let machine = Machine::xt28();
-        let steering = Steering::new(&machine);
-        let mut state = SteeringState::default();
-        for _ in 0..1000 {
-            state = steering.step(
-                state,
-                &SteeringInput { opening: 1.0, angle_rad: 0.0, rate_rad_s: 0.0 },
-                0.005,
-            );
-        }
+        let steering = steering(SteeringEffects::default());
+        let mut state = steering.straight(DT_S);
+        let input = SteeringInput { opening: 1.0, angle_rad: 0.0, rate_rad_s: 0.0 };
+        (0..1000).for_each(|_| steering.step(&mut state, &input, DT_S));
         let torque_nm = state.rest_rad * steering.stiffness_nm();
         assert!((torque_nm - machine.articulation.torque_max_nm).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_delay_shifts_the_whole_response() {
+        let delay = SteerDelay { delay_s: 0.2 };
+        let openings = || (0..400).map(|i| (f64::from(i) * 0.03).sin());
+        let prompt = follow(SteeringEffects::default(), openings());
+        let late = follow(SteeringEffects { delay, ..Default::default() }, openings());
+        assert!(late[..40].iter().all(|rest| *rest == 0.0));
+        for (a, b) in prompt.iter().zip(&late[40..]) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_lag_costs_its_time_constant_on_a_steady_turn() {
+        let lag = SteerLag { time_constant_s: 0.15 };
+        let late = follow(SteeringEffects { lag, ..Default::default() }, [0.5; 400]);
+        // The integral of a first-order rise lags a ramp by one time constant.
+        let wanted_deg = 10.0 * 0.5 * (2.0 - 0.15);
+        assert!((late[399].to_degrees() - wanted_deg).abs() < 0.02, "{}", late[399].to_degrees());
+    }
+
+    #[test]
+    fn a_rate_factor_scales_the_turn() {
+        let rate = SteerRate { factor: 0.7 };
+        let slow = follow(SteeringEffects { rate, ..Default::default() }, [1.0; 200]);
+        assert!((slow[199].to_degrees() - 7.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn backlash_leaves_the_joint_behind_at_each_turn() {
+        let backlash = SteerBacklash { width_rad: 0.04 };
+        let there_and_back = (0..400).map(|i| if i < 200 { 0.5 } else { -0.5 });
+        let rest = follow(SteeringEffects { backlash, ..Default::default() }, there_and_back);
+        let oil_deg = 5.0;
+        assert!((rest[199].to_degrees() - (oil_deg - 0.02_f64.to_degrees())).abs() < 1e-6);
+        // The oil goes back 0.04 rad, at 5 degrees a second, before the joint does.
+        let still = rest[200..].iter().take_while(|r| **r == rest[199]).count();
+        assert!((still as f64 * DT_S - 0.04_f64.to_degrees() / 5.0).abs() < 2.0 * DT_S);
     }
 }

@@ -1,7 +1,7 @@
 //! Every effect there is, in the order of blocks along the machine.
 
 use super::effect::Effect;
-use super::{arms, bus, drive, sensors, steering};
+use super::{arms, bus, drive, ground, payload, sensors, steering, tyres};
 
 /// All effects.
 pub static CATALOGUE: &[Effect] = &[
@@ -17,6 +17,11 @@ pub static CATALOGUE: &[Effect] = &[
     drive::rolling_resistance::EFFECT,
     drive::standstill_drag::EFFECT,
     drive::engine_droop::EFFECT,
+    tyres::slippery_ground::EFFECT,
+    tyres::soft_tyres::EFFECT,
+    payload::load::EFFECT,
+    payload::com_shift::EFFECT,
+    ground::terrain_slope::EFFECT,
     sensors::stroke_bias::EFFECT,
     sensors::stroke_scale::EFFECT,
     sensors::pressure_bias::EFFECT,

@@ -3,8 +3,9 @@
 use xt28_machine::PerWheel;
 
 use super::{
-    ArmEffects, BusEffects, DriveEffects, PressureBias, PressureScale, RollingResistance,
-    SensorEffects, StandstillDrag, SteeringEffects, StrokeBias, StrokeScale, WheelSpeedScale,
+    ArmEffects, BusEffects, DriveEffects, MassEffects, PressureBias, PressureScale,
+    RollingResistance, SensorEffects, SlipperyGround, SoftTyre, StandstillDrag, SteeringEffects,
+    StrokeBias, StrokeScale, TerrainSlope, WheelSpeedScale,
 };
 
 /// What is true of this machine beyond the nominal one. The default is nothing.
@@ -18,6 +19,10 @@ pub struct Effects {
     pub drive: DriveEffects,
     /// Of each wheel and of the sensors at it.
     pub wheels: PerWheel<WheelEffects>,
+    /// Of the masses.
+    pub masses: MassEffects,
+    /// Of the whole ground.
+    pub slope: TerrainSlope,
     /// Of the sensors of which there is one.
     pub sensors: SensorEffects,
     /// Of the way to the ECUs.
@@ -31,6 +36,10 @@ pub struct WheelEffects {
     pub rolling_resistance: RollingResistance,
     /// Motor against wheel.
     pub standstill_drag: StandstillDrag,
+    /// Ground against wheel.
+    pub slippery_ground: SlipperyGround,
+    /// The tyre.
+    pub soft_tyre: SoftTyre,
     /// Position sensor.
     pub stroke_bias: StrokeBias,
     /// Position sensor.

@@ -1,0 +1,46 @@
+//! `slippery-ground`: wheels turn faster than the machine travels.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// How one wheel's grip falls short of the nominal one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipperyGround {
+    /// Friction there is over nominal friction.
+    pub friction_factor: f64,
+    /// Share of a wheel's rolling that does not become travel, even where friction suffices.
+    pub slip: f64,
+}
+
+impl Default for SlipperyGround {
+    fn default() -> Self {
+        Self { friction_factor: 1.0, slip: 0.0 }
+    }
+}
+
+/// Two things that slippery ground does: it carries less force sideways and along, and its top
+/// layer gives way under a rolling wheel, v = (1 - slip) w R.
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "slippery-ground",
+    block: Block::Drive,
+    meaning: "wheels turn faster than the machine travels",
+    source: "terramechanics (Wong): 2 to 5 % of slip at light pull on forest soil, 0.1 to 0.4 of \
+             friction on mud and ice",
+    parameters: &[
+        Parameter {
+            name: "friction_factor",
+            neutral: 1.0,
+            tolerance: 0.3,
+            range: [0.02, 2.0],
+            slot: Slot::PerWheel(|effects, wheel| {
+                &mut effects.wheels[wheel].slippery_ground.friction_factor
+            }),
+        },
+        Parameter {
+            name: "slip",
+            neutral: 0.0,
+            tolerance: 0.03,
+            range: [-0.1, 0.9],
+            slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].slippery_ground.slip),
+        },
+    ],
+};

@@ -1,0 +1,50 @@
+//! `soft-tyres`: vertical compliance and damping of a real tyre.
+
+use crate::effects::{Block, Effect, Parameter, Slot};
+
+/// Spring and damper of one tyre. At the default the machine file's own tyre counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoftTyre {
+    /// Stiffness, N/m.
+    pub stiffness_n_m: f64,
+    /// Damping, N s/m.
+    pub damping_n_s_m: f64,
+}
+
+/// The nominal, near rigid wheel of the machine file.
+const NEAR_RIGID: SoftTyre = SoftTyre { stiffness_n_m: 8.0e6, damping_n_s_m: 6.0e4 };
+
+impl Default for SoftTyre {
+    fn default() -> Self {
+        NEAR_RIGID
+    }
+}
+
+/// The axle sinks by load over stiffness, the wheel rolls on a smaller radius, the machine bounces
+/// and pitches on its tyres. The law is [`crate::Tyre`].
+pub(in crate::effects) const EFFECT: Effect = Effect {
+    name: "soft-tyres",
+    block: Block::Tyre,
+    meaning: "vertical compliance and damping of the tyres",
+    source: "forestry tyres of 700 mm width: 0.3 to 1 MN/m by load and pressure (textbook)",
+    parameters: &[
+        Parameter {
+            name: "stiffness_n_m",
+            neutral: NEAR_RIGID.stiffness_n_m,
+            tolerance: 3.0e6,
+            range: [1.5e5, 2.0e7],
+            slot: Slot::PerWheel(|effects, wheel| {
+                &mut effects.wheels[wheel].soft_tyre.stiffness_n_m
+            }),
+        },
+        Parameter {
+            name: "damping_n_s_m",
+            neutral: NEAR_RIGID.damping_n_s_m,
+            tolerance: 2.0e4,
+            range: [0.0, 2.0e5],
+            slot: Slot::PerWheel(|effects, wheel| {
+                &mut effects.wheels[wheel].soft_tyre.damping_n_s_m
+            }),
+        },
+    ],
+};

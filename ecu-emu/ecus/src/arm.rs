@@ -54,8 +54,12 @@ pub struct ArmOutputs {
     pub solenoid_b_ma: PerWheel<f64>,
     /// Frames for the bus with the gateway.
     pub can1: Outbox,
+    /// Outputs that put a passive accumulator on its cylinder; firmware of 2016 only.
+    pub accumulator_on: PerWheel<bool>,
     /// Frames for the inertial unit's bus.
     pub can2: Outbox,
+    /// Frames for the display's bus; firmware of 2016 only.
+    pub can4: Outbox,
 }
 
 /// The pendulum-arm ECU, profile of the paper: modes off, automatic, manual position and manual

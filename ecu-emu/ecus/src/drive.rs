@@ -70,6 +70,8 @@ pub struct DriveOutputs {
     pub can1: Outbox,
     /// Frames for the engine.
     pub can3: Outbox,
+    /// Frames for the display's bus, which the arm ECU reads too; firmware of 2016 only.
+    pub can4: Outbox,
 }
 
 /// What a drive command asks for.

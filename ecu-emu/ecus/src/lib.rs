@@ -9,10 +9,12 @@
 mod arm;
 mod command_stream;
 mod drive;
+pub mod firmware_2016;
 mod input_check;
 mod life;
 pub mod pins;
 mod port;
+mod profile;
 mod refusal;
 mod send;
 
@@ -20,4 +22,5 @@ pub use arm::{ArmEcu, ArmOutputs, ArmPins, PositionGains};
 pub use drive::{DriveEcu, DriveOutputs, DrivePins, SteeringGains};
 pub use life::State;
 pub use port::Port;
+pub use profile::{Profile, UnknownProfile};
 pub use refusal::Refusal;

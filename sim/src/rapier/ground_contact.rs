@@ -13,8 +13,9 @@ use rapier3d::parry::query::{
 };
 use rapier3d::parry::shape::{Ball, FeatureId, PackedFeatureId, Shape, ShapeType, TypedShape};
 
+use xt28_terrain::Nearest;
+
 use crate::Terrain;
-use crate::ground_minima::{self, Nearest};
 
 /// The ground as a shape; only balls meet it.
 #[derive(Clone, Debug)]
@@ -46,7 +47,8 @@ impl RayCast for Ground {
 
 impl Shape for Ground {
     fn compute_local_aabb(&self) -> Aabb {
-        let half = Vector::new(1.0e4, 1.0e4, 10.0);
+        // As high as wide: a slope without end rises out of any lower box.
+        let half = Vector::splat(1.0e4);
         Aabb::new(-half, half)
     }
 
@@ -115,9 +117,10 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for GroundDispa
         };
         let ball_pose = if flipped { pos12.inverse() } else { *pos12 };
         let reach_m = ball.radius + prediction;
-        let (points, count) = ground_minima::nearest(&ground.0, ball_pose.translation, reach_m);
-        manifolds.resize_with(count, Manifold::new);
-        for (manifold, nearest) in manifolds.iter_mut().zip(&points[..count]) {
+        let centre_m = ball_pose.translation.to_array().map(f64::from);
+        let minima = ground.0.nearest(centre_m, f64::from(reach_m));
+        manifolds.resize_with(minima.points().len(), Manifold::new);
+        for (manifold, nearest) in manifolds.iter_mut().zip(minima.points()) {
             write_contact(manifold, nearest, &ball_pose, ball.radius, flipped);
         }
         Ok(())
@@ -153,16 +156,19 @@ fn write_contact(
     radius: Real,
     flipped: bool,
 ) {
-    let away = ball_pose.translation - nearest.point;
-    let sign = if nearest.distance_m < 0.0 { -1.0 } else { 1.0 };
+    #[allow(clippy::cast_possible_truncation)]
+    let (point, distance) =
+        (Vector::from(nearest.point_m.map(|m| m as Real)), nearest.distance_m as Real);
+    let away = ball_pose.translation - point;
+    let sign = if distance < 0.0 { -1.0 } else { 1.0 };
     let normal = (away * sign).normalize_or(Vector::Z);
     let ball_normal = ball_pose.rotation.inverse() * -normal;
     let contact = TrackedContact::flipped(
-        nearest.point,
+        point,
         ball_normal * radius,
         PackedFeatureId::face(0),
         PackedFeatureId::face(0),
-        nearest.distance_m - radius,
+        distance - radius,
         flipped,
     );
     if manifold.points.len() == 1 {

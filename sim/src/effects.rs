@@ -22,7 +22,11 @@ mod steering;
 mod tyres;
 mod values;
 
-pub use arms::{ArmDelay, ArmEffects};
+pub use arms::{
+    AccumulatorGas, ArmDelay, ArmEffects, ArmGain, LeakageDrift, LoadDependentSpeed, LockDamping,
+    PumpFlowLimit, SealStiction, SpeedAsymmetry, UnsupportedSag, ValveDeadband, ValveGain,
+    ValveHysteresis, ValveLag,
+};
 pub use bus::{BusEffects, CommandJitter, FrameLoss};
 pub use catalogue::{CATALOGUE, find};
 pub use delay_line::DelayLine;

@@ -5,7 +5,20 @@ use super::{arms, bus, drive, ground, payload, sensors, steering, tyres};
 
 /// All effects.
 pub static CATALOGUE: &[Effect] = &[
+    arms::arm_gain::EFFECT,
     arms::arm_delay::EFFECT,
+    arms::valve_lag::EFFECT,
+    arms::valve_hysteresis::EFFECT,
+    arms::valve_deadband::EFFECT,
+    arms::valve_gain::EFFECT,
+    arms::speed_asymmetry::EFFECT,
+    arms::load_dependent_speed::EFFECT,
+    arms::pump_flow_limit::EFFECT,
+    arms::leakage_drift::EFFECT,
+    arms::unsupported_sag::EFFECT,
+    arms::accumulator_gas::EFFECT,
+    arms::lock_damping::EFFECT,
+    arms::seal_stiction::EFFECT,
     steering::steer_delay::EFFECT,
     steering::steer_lag::EFFECT,
     steering::steer_backlash::EFFECT,

@@ -3,7 +3,7 @@
 use xt28_machine::PerWheel;
 
 use super::{
-    ArmEffects, BusEffects, DriveEffects, MassEffects, PressureBias, PressureScale,
+    ArmEffects, BusEffects, DriveEffects, MassEffects, PressureBias, PressureScale, PumpFlowLimit,
     RollingResistance, SensorEffects, SlipperyGround, SoftTyre, StandstillDrag, SteeringEffects,
     StrokeBias, StrokeScale, TerrainSlope, WheelSpeedScale,
 };
@@ -13,6 +13,8 @@ use super::{
 pub struct Effects {
     /// Of each arm's hydraulics.
     pub arms: PerWheel<ArmEffects>,
+    /// Of the pump that arms and steering share.
+    pub pump_flow: PumpFlowLimit,
     /// Of the articulation joints.
     pub steering: SteeringEffects,
     /// Of engine and circuits.

@@ -13,7 +13,7 @@ pub use levelling::Levelling;
 pub use linkage::{ArmPose, Linkage};
 pub use numbers::{
     Arms, Articulation, Drive, Frames, Hydraulics, Machine, MachineError, Masses, Pointing,
-    Sensors, Vehicle, Wheels,
+    Sensors, TyreModel, Vehicle, Wheels,
 };
 pub use time::SimTime;
 pub use wheel::{Axle, PerWheel, Side, Wheel};

@@ -154,6 +154,22 @@ pub struct Vehicle {
     pub tyre_stiffness_n_m: f64,
     /// Damping of a tyre on the ground, N s/m.
     pub tyre_damping_n_s_m: f64,
+    /// How a wheel meets the ground.
+    pub tyre_model: TyreModel,
+    /// Stiffness of a tyre's patch along its rolling, N/m; the brush model's.
+    pub tyre_longitudinal_n_m: f64,
+    /// Stiffness of a tyre's patch along the axle, N/m; the brush model's.
+    pub tyre_lateral_n_m: f64,
+    /// Distance rolled until a tyre's side force has grown to 63 %, m; the brush model's.
+    pub tyre_relaxation_m: f64,
+    /// Whether the front articulation also lets the frames roll against one another.
+    pub roll_hinge: bool,
+    /// Stiffness of the roll hinge, Nm/rad.
+    pub roll_hinge_stiffness_nm: f64,
+    /// Damping of the roll hinge, Nm s/rad.
+    pub roll_hinge_damping_nms: f64,
+    /// Where the roll hinge meets its stops, on either side, deg.
+    pub roll_hinge_max_deg: f64,
     /// Arm pivot from the centre line, m. The wheel hangs outboard of it.
     pub arm_pivot_y_m: f64,
     /// Torque per speed error of a circuit's mean, Nm per rad/s and wheel.
@@ -173,6 +189,14 @@ impl Default for Vehicle {
             wheel_gyration_m: 0.6,
             tyre_stiffness_n_m: 8.0e6,
             tyre_damping_n_s_m: 6.0e4,
+            tyre_model: TyreModel::Rigid,
+            tyre_longitudinal_n_m: 6.0e5,
+            tyre_lateral_n_m: 4.0e5,
+            tyre_relaxation_m: 0.6,
+            roll_hinge: false,
+            roll_hinge_stiffness_nm: 0.0,
+            roll_hinge_damping_nms: 2.0e4,
+            roll_hinge_max_deg: 15.0,
             arm_pivot_y_m: 1.175,
             circuit_gain_nms: 10_000.0,
             mean_integral_nm: 145_000.0,
@@ -180,6 +204,16 @@ impl Default for Vehicle {
             joint_damping_nms: 2.8e5,
         }
     }
+}
+
+/// How a wheel meets the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TyreModel {
+    /// A near rigid ball with dry friction.
+    Rigid,
+    /// A springy tyre whose patch gives along the ground before it slides.
+    Brush,
 }
 
 /// Which way an arm points from its pivot.
@@ -289,6 +323,9 @@ impl Machine {
             ("arms.area_rod_m2", self.arms.area_rod_m2),
             ("vehicle.tyre_stiffness_n_m", self.vehicle.tyre_stiffness_n_m),
             ("vehicle.tyre_damping_n_s_m", self.vehicle.tyre_damping_n_s_m),
+            ("vehicle.tyre_longitudinal_n_m", self.vehicle.tyre_longitudinal_n_m),
+            ("vehicle.tyre_lateral_n_m", self.vehicle.tyre_lateral_n_m),
+            ("vehicle.tyre_relaxation_m", self.vehicle.tyre_relaxation_m),
             ("hydraulics.speed_full_m_s", self.hydraulics.speed_full_m_s),
             ("hydraulics.lock_stiffness_n_m", self.hydraulics.lock_stiffness_n_m),
             ("drive.speed_full_m_s", self.drive.speed_full_m_s),

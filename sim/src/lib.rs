@@ -24,7 +24,9 @@ pub use blocks::{
 };
 pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 pub use effects::Effects;
-pub use parts::{ArmPart, Part, Parts, REFERENCE_STROKE_M, TyrePart};
+pub use parts::{
+    ArmPart, Brush, HullBall, Part, Parts, REFERENCE_STROKE_M, RollHinge, Tilt, TyrePart,
+};
 pub use plant::{Plant, STEP};
 pub use rapier::RapierBodies;
 pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample};

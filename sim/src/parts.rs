@@ -1,22 +1,22 @@
 //! The vehicle as rigid parts with their places and inertias, before any solver takes them.
 
+mod hull;
+mod part;
+mod tilt;
+mod tyre_part;
+
 use xt28_machine::{Axle, GRAVITY_M_S2, Linkage, Machine, PerWheel, Pointing, Side, Wheel};
 
+pub use hull::HullBall;
+pub use part::Part;
+pub use tilt::Tilt;
+pub use tyre_part::{Brush, TyrePart};
+
 use crate::Effects;
+use crate::effects::Payload;
 
 /// Stroke at which the machine file gives the frames' positions, m.
 pub const REFERENCE_STROKE_M: f64 = 0.25;
-
-/// A rigid body's mass; axes and origin as its owner says.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Centre of mass, m.
-    pub com_m: [f64; 3],
-    /// Principal inertias about the centre of mass, along the part's axes, kg m².
-    pub inertia_kg_m2: [f64; 3],
-}
 
 /// A pendulum arm with the wheel at its end; origin at the pivot, axes of its frame when at
 /// [`REFERENCE_STROKE_M`].
@@ -32,15 +32,18 @@ pub struct ArmPart {
     pub extends: f64,
 }
 
-/// A tyre's spring and damper against the ground, and its grip.
+/// Size of the load of logs whose inertia the payload has: length, width, height, m (assumed).
+const LOAD_BOX_M: [f64; 3] = [4.5, 1.8, 1.2];
+
+/// A hinge along the machine, sprung towards level, with stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TyrePart {
-    /// Stiffness, N/m.
-    pub stiffness_n_m: f64,
-    /// Damping, N s/m.
-    pub damping_n_s_m: f64,
-    /// Coefficient of dry friction on the ground.
-    pub friction: f64,
+pub struct RollHinge {
+    /// Stiffness, Nm/rad.
+    pub stiffness_nm: f64,
+    /// Damping, Nm s/rad.
+    pub damping_nms: f64,
+    /// Angle at which it meets its stops on either side, rad.
+    pub max_rad: f64,
 }
 
 /// All parts of one vehicle. Frames share the machine file's axes and origin.
@@ -58,8 +61,16 @@ pub struct Parts {
     pub radius_m: f64,
     /// Tyres.
     pub tyres: PerWheel<TyrePart>,
-    /// Gravity in the world, m/s².
+    /// Gravity along the axes of the ground, m/s².
     pub gravity_m_s2: [f64; 3],
+    /// Roll of the middle frame against the front one, about x through the front joint; `None` where
+    /// there is no such freedom. A solver that has none must refuse it, not leave it out.
+    pub roll_hinge: Option<RollHinge>,
+    /// How the ground, and with it every position that a solver knows, leans in the level world.
+    pub tilt: Option<Tilt>,
+    /// Outside of the front, middle and rear frame. A solver may leave it out and report no
+    /// [`crate::Motion::chassis_force_n`].
+    pub hulls: [Vec<HullBall>; 3],
     /// Between cylinder and arm.
     pub linkage: Linkage,
 }
@@ -67,22 +78,26 @@ pub struct Parts {
 impl Parts {
     /// The parts of this machine, with what the effects change of them.
     #[must_use]
-    pub fn new(machine: &Machine, _effects: &Effects) -> Self {
+    pub fn new(machine: &Machine, effects: &Effects) -> Self {
         let (m, f) = (&machine.masses, &machine.frames);
-        let frame = |mass_kg: f64, com_m: [f64; 3], box_m: [f64; 3]| Part {
-            mass_kg,
-            com_m,
-            inertia_kg_m2: box_inertia_kg_m2(mass_kg, box_m),
-        };
+        let shift = &effects.masses.com_shift;
+        let mut front = Part::solid_box(m.front_frame_kg, f.front_com_m, f.front_box_m);
+        for (com_m, by_m) in front.com_m.iter_mut().zip([shift.x_m, shift.y_m, shift.z_m]) {
+            *com_m += by_m;
+        }
+        let rear = Part::solid_box(m.rear_frame_kg, f.rear_com_m, f.rear_box_m);
+        let slope = &effects.slope;
+        let tilt = Tilt::new(slope.grade_x_rad, slope.grade_y_rad);
+        let down = [0.0, 0.0, -GRAVITY_M_S2];
         let joint = |x: f64| [x, 0.0, machine.wheels.radius_m];
         let v = &machine.vehicle;
         let about_axle = m.wheel_kg * v.wheel_gyration_m * v.wheel_gyration_m;
         let across = 0.6 * about_axle;
         Self {
             frames: [
-                frame(m.front_frame_kg, f.front_com_m, f.front_box_m),
-                frame(m.middle_frame_kg, f.middle_com_m, f.middle_box_m),
-                frame(m.rear_frame_kg, f.rear_com_m, f.rear_box_m),
+                front,
+                Part::solid_box(m.middle_frame_kg, f.middle_com_m, f.middle_box_m),
+                rear.joined(load(&effects.masses.payload, f.rear_com_m[0])),
             ],
             joint_m: [
                 joint(machine.articulation.front_joint_x_m),
@@ -93,14 +108,18 @@ impl Parts {
                 mass_kg: m.wheel_kg,
                 com_m: [0.0; 3],
                 inertia_kg_m2: [across, about_axle, across],
+                products_kg_m2: [0.0; 3],
             },
             radius_m: machine.wheels.radius_m,
-            tyres: PerWheel::splat(TyrePart {
-                stiffness_n_m: v.tyre_stiffness_n_m,
-                damping_n_s_m: v.tyre_damping_n_s_m,
-                friction: machine.wheels.friction,
+            tyres: PerWheel::from_fn(|wheel| TyrePart::new(machine, &effects.wheels[wheel])),
+            gravity_m_s2: tilt.map_or(down, |tilt| tilt.to_ground(down)),
+            roll_hinge: v.roll_hinge.then_some(RollHinge {
+                stiffness_nm: v.roll_hinge_stiffness_nm,
+                damping_nms: v.roll_hinge_damping_nms,
+                max_rad: v.roll_hinge_max_deg.to_radians(),
             }),
-            gravity_m_s2: [0.0, 0.0, -GRAVITY_M_S2],
+            tilt,
+            hulls: hull::hulls(machine),
             linkage: machine.linkage(),
         }
     }
@@ -111,6 +130,12 @@ impl Parts {
         self.linkage.at_stroke(stroke_m).angle_rad
             - self.linkage.at_stroke(REFERENCE_STROKE_M).angle_rad
     }
+}
+
+/// The load in the bunk of an empty rear frame whose centre of mass is at `bunk_x_m`.
+fn load(payload: &Payload, bunk_x_m: f64) -> Part {
+    let com_m = [bunk_x_m + payload.longitudinal_m, payload.lateral_m, payload.height_m];
+    Part::solid_box(payload.mass_kg, com_m, LOAD_BOX_M)
 }
 
 fn arm(machine: &Machine, wheel: Wheel) -> ArmPart {
@@ -136,12 +161,7 @@ fn arm(machine: &Machine, wheel: Wheel) -> ArmPart {
         mass_kg,
         com_m: to_wheel_m.map(|c| c * v.arm_com_share),
         inertia_kg_m2: [slender; 3],
+        products_kg_m2: [0.0; 3],
     };
     ArmPart { body, pivot_m, to_wheel_m, extends: forward }
-}
-
-/// Principal inertias of a solid box, kg m².
-fn box_inertia_kg_m2(mass_kg: f64, [x, y, z]: [f64; 3]) -> [f64; 3] {
-    let m = mass_kg / 12.0;
-    [m * (y * y + z * z), m * (x * x + z * z), m * (x * x + y * y)]
 }

@@ -87,7 +87,17 @@ pub(super) fn insert_arm(
 
 #[allow(clippy::cast_possible_truncation)]
 fn body(part: &Part) -> RigidBodyBuilder {
-    let mass =
-        MassProperties::new(vector(part.com_m), part.mass_kg as Real, vector(part.inertia_kg_m2));
+    let (com, mass_kg) = (vector(part.com_m), part.mass_kg as Real);
+    let mass = if part.products_kg_m2 == [0.0; 3] {
+        MassProperties::new(com, mass_kg, vector(part.inertia_kg_m2))
+    } else {
+        MassProperties::with_inertia_matrix(com, mass_kg, tensor(part))
+    };
     RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass)
+}
+
+/// The inertia tensor, columns of a symmetric matrix.
+fn tensor(part: &Part) -> Matrix {
+    let ([xx, yy, zz], [xy, xz, yz]) = (part.inertia_kg_m2, part.products_kg_m2);
+    Matrix::from_cols(vector([xx, xy, xz]), vector([xy, yy, yz]), vector([xz, yz, zz]))
 }

@@ -3,8 +3,8 @@
 use xt28_machine::{GRAVITY_M_S2, Linkage, Machine, PerWheel, Wheel};
 
 use crate::blocks::{
-    Cylinder, CylinderInput, CylinderState, Drive, DriveInput, DriveOutput, DriveState, Steering,
-    SteeringInput, SteeringState, Valve, ValveState,
+    Arm, ArmInput, ArmState, CylinderMotion, Drive, DriveInput, DriveOutput, DriveState,
+    FlowSharing, Steering, SteeringInput, SteeringState,
 };
 use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Actuation, Effects, REFERENCE_STROKE_M, VehicleState};
@@ -19,15 +19,22 @@ const BRAKE_TORQUE_NM: f64 = 20_000.0;
 pub(crate) struct Actuators {
     linkage: Linkage,
     reference_rad: f64,
-    valves: PerWheel<Valve>,
-    cylinder: Cylinder,
+    arms: PerWheel<Arm>,
+    flow: FlowSharing,
     steering: Steering,
     drive: Drive,
     rolling_resistance_m: PerWheel<f64>,
-    valve_states: PerWheel<ValveState>,
-    cylinders: PerWheel<CylinderState>,
+    arm_states: PerWheel<ArmState>,
     joints: [SteeringState; 2],
     shaft: DriveState,
+}
+
+/// An arm whose valve has moved, waiting for its share of the oil.
+#[derive(Clone, Copy, Debug, Default)]
+struct OpenArm {
+    input: ArmInput,
+    speed_m_s: f64,
+    lever_m: f64,
 }
 
 impl Actuators {
@@ -38,20 +45,22 @@ impl Actuators {
         stroke_m: PerWheel<f64>,
         dt_s: f64,
     ) -> Self {
-        let cylinder = Cylinder::new(machine);
         let linkage = machine.linkage();
         let weight_n = machine.mass_kg() * GRAVITY_M_S2 / 6.0;
-        let valves = effects.arms.map(Valve::new);
+        let arms = PerWheel::from_fn(|wheel| Arm::new(machine, &effects.arms[wheel]));
+        let settled = |wheel: Wheel| {
+            let stroke_m = stroke_m[wheel];
+            let load_n = weight_n / linkage.at_stroke(stroke_m).force_ratio;
+            arms[wheel].settled(stroke_m, load_n, dt_s)
+        };
         let steering = Steering::new(machine, &effects.steering);
         let drive = Drive::new(machine, effects);
         Self {
             linkage,
             reference_rad: linkage.at_stroke(REFERENCE_STROKE_M).angle_rad,
-            valve_states: valves.map(|valve| valve.closed(dt_s)),
-            valves,
-            cylinders: stroke_m
-                .map(|s| cylinder.settled(s, weight_n / linkage.at_stroke(s).force_ratio)),
-            cylinder,
+            arm_states: PerWheel::from_fn(settled),
+            arms,
+            flow: FlowSharing::new(machine, effects.pump_flow),
             joints: [steering.straight(dt_s), steering.straight(dt_s)],
             steering,
             shaft: drive.at_rest(dt_s),
@@ -71,8 +80,10 @@ impl Actuators {
         state: &mut VehicleState,
         dt_s: f64,
     ) -> Loads {
-        let arm = self.move_arms(actuation, motion, dt_s);
-        let joint = self.turn_joints(actuation, motion, dt_s);
+        let open = self.open_arms(actuation, motion, dt_s);
+        let flow_share = self.flow_share(&open, actuation);
+        let arm = self.fill_arms(&open, flow_share, motion, dt_s);
+        let joint = self.turn_joints(actuation, motion, flow_share, dt_s);
         let drive = self.drive_wheels(actuation, motion, dt_s);
         state.wheel_torque_nm = drive.wheel_torque_nm;
         state.pump_pressure_pa = drive.pump_pressure_pa;
@@ -90,42 +101,59 @@ impl Actuators {
     /// Writes what the cylinders show in this motion.
     pub(crate) fn observe(&self, motion: &Motion, state: &mut VehicleState) {
         for wheel in Wheel::ALL {
-            let (input, _) = self.cylinder_input(motion.arm[wheel], 0.0);
-            let force_n = self.cylinder.oil_force_n(self.cylinders[wheel], &input);
-            let [a, b] = self.cylinder.pressures_pa(force_n);
-            state.stroke_m[wheel] = input.stroke_m;
-            state.stroke_rate_m_s[wheel] = input.stroke_rate_m_s;
+            let (cylinder, _) = self.cylinder_motion(motion.arm[wheel]);
+            let force_n = self.arms[wheel].oil_force_n(&self.arm_states[wheel], &cylinder);
+            let [a, b] = self.arms[wheel].pressures_pa(force_n);
+            state.stroke_m[wheel] = cylinder.stroke_m;
+            state.stroke_rate_m_s[wheel] = cylinder.stroke_rate_m_s;
             state.cylinder_force_n[wheel] = force_n;
             (state.pressure_a_pa[wheel], state.pressure_b_pa[wheel]) = (a, b);
         }
     }
 
-    /// What a cylinder sees of its arm's motion, and its lever about the arm's hinge, m.
-    fn cylinder_input(&self, arm: HingeMotion, opening: f64) -> (CylinderInput, f64) {
+    /// How a cylinder moves with its arm, and its lever about the arm's hinge, m.
+    fn cylinder_motion(&self, arm: HingeMotion) -> (CylinderMotion, f64) {
         let angle_rad = self.reference_rad + arm.angle_rad;
         let lever_m = self.linkage.lever_m(angle_rad);
-        let input = CylinderInput {
-            opening,
+        let motion = CylinderMotion {
             stroke_m: self.linkage.stroke_m(angle_rad),
             stroke_rate_m_s: arm.rate_rad_s * lever_m,
         };
-        (input, lever_m)
+        (motion, lever_m)
     }
 
-    fn move_arms(
+    /// Moves the spools of the arms' valves; what then acts on the cylinders.
+    fn open_arms(
         &mut self,
         actuation: &Actuation,
         motion: &Motion,
         dt_s: f64,
+    ) -> PerWheel<OpenArm> {
+        PerWheel::from_fn(|wheel| {
+            let (cylinder, lever_m) = self.cylinder_motion(motion.arm[wheel]);
+            let (arm, state) = (&self.arms[wheel], &mut self.arm_states[wheel]);
+            let input = ArmInput {
+                command: actuation.arm_opening[wheel],
+                load_n: arm.oil_force_n(state, &cylinder),
+                motion: cylinder,
+            };
+            OpenArm { speed_m_s: arm.open(state, &input, dt_s), input, lever_m }
+        })
+    }
+
+    /// Lets each cylinder have its share of the oil; the force about its arm's hinge, linearised
+    /// around this motion.
+    fn fill_arms(
+        &mut self,
+        open: &PerWheel<OpenArm>,
+        flow_share: f64,
+        motion: &Motion,
+        dt_s: f64,
     ) -> PerWheel<HingeSpring> {
         PerWheel::from_fn(|wheel| {
-            let command = actuation.arm_opening[wheel];
-            let opening = self.valves[wheel].step(&mut self.valve_states[wheel], command, dt_s);
-            let (input, lever_m) = self.cylinder_input(motion.arm[wheel], opening);
-            let state = self.cylinder.step(self.cylinders[wheel], &input, dt_s);
-            self.cylinders[wheel] = state;
-            // The cylinder's law about the hinge, linearised at this angle.
-            let force = self.cylinder.force(state, &input);
+            let OpenArm { input, speed_m_s, lever_m } = &open[wheel];
+            let state = &mut self.arm_states[wheel];
+            let force = self.arms[wheel].fill(state, input, flow_share * speed_m_s, dt_s);
             HingeSpring::through(
                 motion.arm[wheel],
                 force.force_n * lever_m,
@@ -135,15 +163,27 @@ impl Actuators {
         })
     }
 
+    /// Share of the oil asked for that the pump delivers.
+    fn flow_share(&self, open: &PerWheel<OpenArm>, actuation: &Actuation) -> f64 {
+        let arms_m3_s = open.map(|arm| self.flow.cylinder_m3_s(arm.speed_m_s)).sum();
+        let joints_m3_s: f64 = actuation
+            .steer_opening
+            .map(|opening| self.flow.joint_m3_s(opening * 0.17))
+            .iter()
+            .sum();
+        self.flow.share(arms_m3_s + joints_m3_s)
+    }
+
     fn turn_joints(
         &mut self,
         actuation: &Actuation,
         motion: &Motion,
+        flow_share: f64,
         dt_s: f64,
     ) -> [HingeSpring; 2] {
         core::array::from_fn(|i| {
             let input = SteeringInput {
-                opening: actuation.steer_opening[i],
+                opening: flow_share * actuation.steer_opening[i],
                 angle_rad: motion.joint[i].angle_rad,
                 rate_rad_s: motion.joint[i].rate_rad_s,
             };

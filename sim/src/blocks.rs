@@ -1,11 +1,19 @@
 //! The blocks of the plant: pure steps that can be driven alone on measured inputs.
 
+mod accumulator;
+mod arm;
 mod cylinder;
 mod drive;
+mod flow_sharing;
+mod lock;
 mod steering;
 mod valve;
 
-pub use cylinder::{Cylinder, CylinderForce, CylinderInput, CylinderState};
+pub use accumulator::Accumulator;
+pub use arm::{Arm, ArmInput, ArmState};
+pub use cylinder::{Cylinder, CylinderForce, CylinderMotion, CylinderState};
 pub use drive::{Drive, DriveInput, DriveOutput, DriveState};
+pub use flow_sharing::FlowSharing;
+pub use lock::Lock;
 pub use steering::{Steering, SteeringInput, SteeringState};
 pub use valve::{Valve, ValveState};

@@ -19,8 +19,9 @@ mod vehicle;
 
 pub use actuation::Actuation;
 pub use blocks::{
-    Cylinder, CylinderForce, CylinderInput, CylinderState, Drive, DriveInput, DriveOutput,
-    DriveState, Steering, SteeringInput, SteeringState, Valve, ValveState,
+    Accumulator, Arm, ArmInput, ArmState, Cylinder, CylinderForce, CylinderMotion, CylinderState,
+    Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, Steering, SteeringInput,
+    SteeringState, Valve, ValveState,
 };
 pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 pub use effects::Effects;

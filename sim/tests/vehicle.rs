@@ -2,8 +2,8 @@
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{
-    Actuation, Cylinder, CylinderInput, Drive, DriveInput, Effects, Plant, Ramp, STEP, Steering,
-    SteeringInput, Terrain, Vehicle, VehicleState,
+    Actuation, Drive, DriveInput, Effects, Plant, Ramp, STEP, Steering, SteeringInput, Terrain,
+    Vehicle, VehicleState,
 };
 
 fn idle() -> Actuation {
@@ -137,19 +137,15 @@ fn twice_the_same_is_the_same_to_the_bit() {
     assert_eq!(once(), once());
 }
 
-/// Blocks alone, fed with the vehicle's own signals, must say what the vehicle said. Cylinder and
-/// joint are exact; the drive's torques too, since nothing between it and the wheels is hidden.
+/// Blocks alone, fed with the vehicle's own signals, must say what the vehicle said: here joints and
+/// drive, whose torques are exact, since nothing between it and the wheels is hidden.
 #[test]
 fn blocks_alone_reproduce_the_whole() {
     let machine = Machine::xt28();
     let mut vehicle = Vehicle::new(&machine, &Terrain::Flat, PerWheel::splat(0.17));
     let effects = Effects::default();
-    let (cylinder, steering) =
-        (Cylinder::new(&machine), Steering::new(&machine, &effects.steering));
+    let steering = Steering::new(&machine, &effects.steering);
     let drive = Drive::new(&machine, &effects);
-    let weight_n = machine.mass_kg() * GRAVITY_M_S2 / 6.0;
-    let ratio = machine.linkage().at_stroke(0.17).force_ratio;
-    let mut rest = PerWheel::splat(cylinder.settled(0.17, weight_n / ratio));
     let dt_s = STEP.as_secs_f64();
     let (mut joints, mut shaft) = ([(); 2].map(|()| steering.straight(dt_s)), drive.at_rest(dt_s));
     for step in 0..2000 {
@@ -163,16 +159,6 @@ fn blocks_alone_reproduce_the_whole() {
         let before = *vehicle.state();
         vehicle.step(&actuation);
         let after = vehicle.state();
-        for wheel in Wheel::ALL {
-            let at = |s: &VehicleState| CylinderInput {
-                opening: actuation.arm_opening[wheel],
-                stroke_m: s.stroke_m[wheel],
-                stroke_rate_m_s: s.stroke_rate_m_s[wheel],
-            };
-            rest[wheel] = cylinder.step(rest[wheel], &at(&before), dt_s);
-            let alone_n = cylinder.oil_force_n(rest[wheel], &at(after));
-            assert!((alone_n - after.cylinder_force_n[wheel]).abs() < 1e-6);
-        }
         for (i, joint) in joints.iter_mut().enumerate() {
             let input = SteeringInput {
                 opening: actuation.steer_opening[i],

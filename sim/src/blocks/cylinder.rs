@@ -1,23 +1,26 @@
-//! One arm's hydraulics: the valve moves the rest position, the accumulator's soft lock makes the force.
+//! One arm's cylinder: oil moves the rest position, the closed oil makes the force, seals hold it up.
 //!
-//! Nominal model of the paper (section 3.2): an ideal valve whose flow is proportional to its
-//! opening, and a compliant one-dimensional lock in place of the cylinder and its accumulator.
+//! Nominal model of the paper (section 3.2): a compliant one-dimensional lock in place of the
+//! cylinder and its accumulator. The lock stands for all that gives way between valve and piston, so
+//! the chambers' pressures follow from its force and have no state of their own.
 
 use xt28_machine::Machine;
+
+use super::Lock;
+use crate::effects::{ArmEffects, SealStiction};
 
 /// Stiffness of the metal end stops, N/m (assumed).
 const STOP_STIFFNESS_N_M: f64 = 2.0e7;
 /// Damping of the metal end stops, N s/m (assumed).
 const STOP_DAMPING_N_S_M: f64 = 2.0e5;
 
-/// Parameters of one cylinder with its valve and accumulator.
+/// Parameters of one cylinder with its accumulator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cylinder {
-    speed_full_m_s: f64,
-    stiffness_n_m: f64,
+    lock: Lock,
     damping_n_s_m: f64,
+    stiction: SealStiction,
     stroke_max_m: f64,
-    force_max_n: f64,
     area_bore_m2: f64,
     area_rod_m2: f64,
     return_pressure_pa: f64,
@@ -26,15 +29,15 @@ pub struct Cylinder {
 /// What a cylinder remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CylinderState {
-    /// Stroke at which the lock makes no force, m.
+    /// Stroke at which the oil makes no force, m.
     pub rest_m: f64,
+    /// Friction of the seals, N; positive against extension.
+    pub friction_n: f64,
 }
 
-/// What acts on a cylinder.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CylinderInput {
-    /// Spool opening, -1 (retract) to 1 (extend).
-    pub opening: f64,
+/// How a cylinder moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CylinderMotion {
     /// Stroke, m.
     pub stroke_m: f64,
     /// Stroke rate, m/s.
@@ -55,60 +58,70 @@ pub struct CylinderForce {
 impl Cylinder {
     /// A cylinder of this machine.
     #[must_use]
-    pub const fn new(machine: &Machine) -> Self {
+    pub fn new(machine: &Machine, effects: &ArmEffects) -> Self {
         let (h, a) = (&machine.hydraulics, &machine.arms);
         Self {
-            speed_full_m_s: h.speed_full_m_s,
-            stiffness_n_m: h.lock_stiffness_n_m,
-            damping_n_s_m: h.lock_damping_n_s_m,
+            lock: Lock::new(machine, &effects.gas),
+            damping_n_s_m: h.lock_damping_n_s_m * effects.lock_damping.factor,
+            stiction: effects.stiction,
             stroke_max_m: a.stroke_max_m,
-            force_max_n: a.force_max_n,
             area_bore_m2: a.area_bore_m2,
             area_rod_m2: a.area_rod_m2,
             return_pressure_pa: h.return_pressure_pa,
         }
     }
 
-    /// The state at which the cylinder carries `force_n` at rest at `stroke_m`.
+    /// The state at which the oil carries `force_n` at rest at `stroke_m`.
     #[must_use]
     pub fn settled(&self, stroke_m: f64, force_n: f64) -> CylinderState {
-        CylinderState { rest_m: stroke_m + force_n / self.stiffness_n_m }
+        CylinderState { rest_m: stroke_m + self.lock.compression_m(force_n), friction_n: 0.0 }
     }
 
-    /// Moves the rest position by the valve's flow over `dt_s` s.
+    /// Lets oil for an extending speed of `speed_m_s` in over `dt_s` s, and the seals follow.
     ///
     /// The rest never runs further from the stroke than the relief valve's force allows.
     #[must_use]
-    pub fn step(&self, state: CylinderState, input: &CylinderInput, dt_s: f64) -> CylinderState {
-        let opening = input.opening.clamp(-1.0, 1.0);
-        let rest_m = state.rest_m + opening * self.speed_full_m_s * dt_s;
-        let reach_m = self.force_max_n / self.stiffness_n_m;
-        CylinderState { rest_m: rest_m.clamp(input.stroke_m - reach_m, input.stroke_m + reach_m) }
+    pub fn step(
+        &self,
+        state: CylinderState,
+        motion: &CylinderMotion,
+        speed_m_s: f64,
+        dt_s: f64,
+    ) -> CylinderState {
+        let [drawn_m, pushed_m] = self.lock.reach_m();
+        let rest_m = state.rest_m + speed_m_s * dt_s;
+        CylinderState {
+            rest_m: rest_m.clamp(motion.stroke_m + drawn_m, motion.stroke_m + pushed_m),
+            friction_n: self.stiction.step(state.friction_n, motion.stroke_rate_m_s, dt_s),
+        }
     }
 
-    /// The force at a stroke and a rate: k (rest - s) - c ds/dt, and the end stops beyond 0 and full.
+    /// The force on the arm about this motion, over the coming `dt_s` s: of the oil, of the seals,
+    /// and of the end stops beyond 0 and full.
     #[must_use]
-    pub fn force(&self, state: CylinderState, input: &CylinderInput) -> CylinderForce {
+    pub fn force(&self, state: CylinderState, motion: &CylinderMotion, dt_s: f64) -> CylinderForce {
+        let [spring_n, spring_n_m] = self.lock.spring(state.rest_m - motion.stroke_m);
+        let rate_m_s = motion.stroke_rate_m_s;
+        let [seal_n, seal_n_m] = self.stiction.ahead(state.friction_n, rate_m_s, dt_s);
         let mut out = CylinderForce {
-            force_n: self.oil_force_n(state, input),
-            stiffness_n_m: self.stiffness_n_m,
+            force_n: spring_n - self.damping_n_s_m * rate_m_s - seal_n,
+            stiffness_n_m: spring_n_m + seal_n_m,
             damping_n_s_m: self.damping_n_s_m,
         };
-        let beyond_m = input.stroke_m - input.stroke_m.clamp(0.0, self.stroke_max_m);
+        let beyond_m = motion.stroke_m - motion.stroke_m.clamp(0.0, self.stroke_max_m);
         if beyond_m != 0.0 {
-            out.force_n -=
-                STOP_STIFFNESS_N_M * beyond_m + STOP_DAMPING_N_S_M * input.stroke_rate_m_s;
+            out.force_n -= STOP_STIFFNESS_N_M * beyond_m + STOP_DAMPING_N_S_M * rate_m_s;
             out.stiffness_n_m += STOP_STIFFNESS_N_M;
             out.damping_n_s_m += STOP_DAMPING_N_S_M;
         }
         out
     }
 
-    /// The force that is in the oil: what the lock makes, without the end stops.
+    /// The force that is in the oil, and so in the pressures: without seals and end stops.
     #[must_use]
-    pub fn oil_force_n(&self, state: CylinderState, input: &CylinderInput) -> f64 {
-        self.stiffness_n_m * (state.rest_m - input.stroke_m)
-            - self.damping_n_s_m * input.stroke_rate_m_s
+    pub fn oil_force_n(&self, state: CylinderState, motion: &CylinderMotion) -> f64 {
+        let [spring_n, _] = self.lock.spring(state.rest_m - motion.stroke_m);
+        spring_n - self.damping_n_s_m * motion.stroke_rate_m_s
     }
 
     /// Pressures of chambers A (bore) and B (rod), Pa, that make `oil_force_n`.
@@ -130,13 +143,22 @@ impl Cylinder {
 mod tests {
     use super::*;
 
+    const DT_S: f64 = 0.005;
+
+    fn nominal() -> Cylinder {
+        Cylinder::new(&Machine::xt28(), &ArmEffects::default())
+    }
+
+    fn at(stroke_m: f64) -> CylinderMotion {
+        CylinderMotion { stroke_m, stroke_rate_m_s: 0.0 }
+    }
+
     #[test]
-    fn the_valve_moves_the_rest_at_its_full_speed() {
-        let cylinder = Cylinder::new(&Machine::xt28());
+    fn oil_moves_the_rest() {
+        let cylinder = nominal();
         let mut state = cylinder.settled(0.2, 0.0);
-        let input = CylinderInput { opening: 0.3, stroke_m: 0.2, stroke_rate_m_s: 0.0 };
         for _ in 0..20 {
-            state = cylinder.step(state, &input, 0.005);
+            state = cylinder.step(state, &at(0.2), 0.3 * 0.212, DT_S);
         }
         assert!((state.rest_m - (0.2 + 0.3 * 0.212 * 0.1)).abs() < 1e-12);
     }
@@ -144,9 +166,8 @@ mod tests {
     #[test]
     fn pressures_make_the_force_on_both_sides_of_zero() {
         let machine = Machine::xt28();
-        let cylinder = Cylinder::new(&machine);
         for force_n in [-50_000.0, -1.0, 0.0, 1.0, 55_000.0] {
-            let [a, b] = cylinder.pressures_pa(force_n);
+            let [a, b] = nominal().pressures_pa(force_n);
             assert!(a >= 0.0 && b >= 0.0);
             let made = a * machine.arms.area_bore_m2 - b * machine.arms.area_rod_m2;
             assert!((made - force_n).abs() < 1e-6, "{force_n}: {made}");
@@ -155,34 +176,39 @@ mod tests {
 
     #[test]
     fn the_slope_is_the_derivative_of_the_force() {
-        let cylinder = Cylinder::new(&Machine::xt28());
-        for stroke_m in [-0.01, 0.25, 0.51] {
-            let at = |ds: f64, dv: f64| {
-                let input = CylinderInput {
-                    opening: 0.0,
-                    stroke_m: stroke_m + ds,
-                    stroke_rate_m_s: 0.01 + dv,
+        let mut soft = ArmEffects::default();
+        (soft.gas.share, soft.lock_damping.factor) = (0.7, 1.4);
+        for effects in [ArmEffects::default(), soft] {
+            let cylinder = Cylinder::new(&Machine::xt28(), &effects);
+            for stroke_m in [-0.01, 0.17, 0.25, 0.51] {
+                let at = |ds: f64, dv: f64| {
+                    let motion =
+                        CylinderMotion { stroke_m: stroke_m + ds, stroke_rate_m_s: 0.01 + dv };
+                    let state = CylinderState { rest_m: 0.2, friction_n: 0.0 };
+                    cylinder.force(state, &motion, DT_S)
                 };
-                cylinder.force(CylinderState { rest_m: 0.2 }, &input)
-            };
-            let d = 1e-6;
-            let slope = -(at(d, 0.0).force_n - at(-d, 0.0).force_n) / (2.0 * d);
-            let rate = -(at(0.0, d).force_n - at(0.0, -d).force_n) / (2.0 * d);
-            assert!((slope / at(0.0, 0.0).stiffness_n_m - 1.0).abs() < 1e-6);
-            assert!((rate / at(0.0, 0.0).damping_n_s_m - 1.0).abs() < 1e-6);
+                let d = 1e-6;
+                let slope = -(at(d, 0.0).force_n - at(-d, 0.0).force_n) / (2.0 * d);
+                let rate = -(at(0.0, d).force_n - at(0.0, -d).force_n) / (2.0 * d);
+                assert!((slope / at(0.0, 0.0).stiffness_n_m - 1.0).abs() < 1e-6);
+                assert!((rate / at(0.0, 0.0).damping_n_s_m - 1.0).abs() < 1e-6);
+            }
         }
     }
 
     #[test]
     fn the_relief_valve_bounds_the_force() {
         let machine = Machine::xt28();
-        let cylinder = Cylinder::new(&machine);
-        let input = CylinderInput { opening: 1.0, stroke_m: 0.5, stroke_rate_m_s: 0.0 };
-        let mut state = cylinder.settled(0.5, 0.0);
-        for _ in 0..10_000 {
-            state = cylinder.step(state, &input, 0.005);
+        let mut gas = ArmEffects::default();
+        gas.gas.share = 1.0;
+        for effects in [ArmEffects::default(), gas] {
+            let cylinder = Cylinder::new(&machine, &effects);
+            let mut state = cylinder.settled(0.5, 0.0);
+            for _ in 0..10_000 {
+                state = cylinder.step(state, &at(0.5), 0.212, DT_S);
+            }
+            let force_n = cylinder.force(state, &at(0.5), DT_S).force_n;
+            assert!((force_n - machine.arms.force_max_n).abs() < 1e-3, "{force_n}");
         }
-        let force_n = cylinder.force(state, &input).force_n;
-        assert!((force_n - machine.arms.force_max_n).abs() < 1e-6);
     }
 }

@@ -1,34 +1,106 @@
-//! One arm's proportional valve: from the commanded opening to the opening that lets oil flow.
+//! One arm's proportional valve: from the commanded opening to the speed it asks of the cylinder.
 
-use crate::effects::{ArmEffects, DelayLine};
+use xt28_machine::Machine;
 
-/// Parameters of a valve. Nominal: the spool is where the command is (paper 3.2).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+use crate::effects::{
+    ArmDelay, ArmEffects, DelayLine, Lag, LoadDependentSpeed, SpeedAsymmetry, ValveDeadband,
+    ValveGain, ValveHysteresis, ValveLag,
+};
+
+/// Parameters of a valve. Nominal: the spool is where the command is, and the speed is proportional
+/// to its opening whatever the load (paper 3.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Valve {
-    effects: ArmEffects,
+    speed_full_m_s: f64,
+    area_bore_m2: f64,
+    delay: ArmDelay,
+    lag: ValveLag,
+    hysteresis: ValveHysteresis,
+    deadband: ValveDeadband,
+    gain: ValveGain,
+    asymmetry: SpeedAsymmetry,
+    load_dependence: LoadDependentSpeed,
 }
 
 /// What a valve remembers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ValveState {
     commands: DelayLine,
+    pull: Lag,
+    spool: f64,
 }
 
 impl Valve {
-    /// A valve with these effects.
+    /// A valve of this machine.
     #[must_use]
-    pub const fn new(effects: ArmEffects) -> Self {
-        Self { effects }
+    pub const fn new(machine: &Machine, effects: &ArmEffects) -> Self {
+        Self {
+            speed_full_m_s: machine.hydraulics.speed_full_m_s,
+            area_bore_m2: machine.arms.area_bore_m2,
+            delay: effects.delay,
+            lag: effects.lag,
+            hysteresis: effects.hysteresis,
+            deadband: effects.deadband,
+            gain: effects.valve_gain,
+            asymmetry: effects.asymmetry,
+            load_dependence: effects.load_dependence,
+        }
     }
 
     /// A closed valve that is stepped every `dt_s` s.
     #[must_use]
     pub fn closed(&self, dt_s: f64) -> ValveState {
-        ValveState { commands: DelayLine::new(self.effects.delay.delay_s, dt_s, 0.0) }
+        ValveState {
+            commands: DelayLine::new(self.delay.delay_s, dt_s, 0.0),
+            ..ValveState::default()
+        }
     }
 
-    /// Opening after `dt_s` s more under `command`, both -1 (retract) to 1 (extend).
+    /// Where the spool is after `dt_s` s more under `command`, both -1 (retract) to 1 (extend).
     pub fn step(&self, state: &mut ValveState, command: f64, dt_s: f64) -> f64 {
-        state.commands.step(command.clamp(-1.0, 1.0), self.effects.delay.delay_s, dt_s)
+        let arrived = state.commands.step(command.clamp(-1.0, 1.0), self.delay.delay_s, dt_s);
+        let pull = state.pull.step(arrived, self.lag.time_constant_s, dt_s);
+        state.spool = self.hysteresis.spool(state.spool, pull);
+        state.spool
+    }
+
+    /// Extending speed that the oil through the spool gives a cylinder under `load_n`, m/s, while
+    /// the pump delivers what is asked.
+    #[must_use]
+    pub fn speed_m_s(&self, spool: f64, load_n: f64) -> f64 {
+        let opening = self.deadband.opening(spool);
+        let scale = self.gain.factor
+            * self.asymmetry.factor(opening)
+            * self.load_dependence.factor(opening, load_n / self.area_bore_m2);
+        opening * self.speed_full_m_s * scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nominal_valve_is_a_wire_with_a_speed() {
+        let valve = Valve::new(&Machine::xt28(), &ArmEffects::default());
+        let mut state = valve.closed(0.005);
+        for command in [0.3, -0.123, 0.0, 1.0, 7.0] {
+            let spool = valve.step(&mut state, command, 0.005);
+            assert_eq!(spool, command.min(1.0));
+            assert_eq!(valve.speed_m_s(spool, 55e3), spool * 0.212);
+        }
+    }
+
+    #[test]
+    fn what_scales_the_speed_multiplies() {
+        let mut effects = ArmEffects::default();
+        effects.deadband.deadband = 0.05;
+        effects.valve_gain.factor = 1.2;
+        effects.asymmetry.contraction_factor = 1.5;
+        effects.load_dependence.droop = 0.02;
+        let valve = Valve::new(&Machine::xt28(), &effects);
+        let hurry = (1.0 + 0.02 * 78.5e3 / 0.00785 / 8.0e5_f64).sqrt();
+        let wanted_m_s = -(0.3 - 0.05) * 0.212 * 1.2 * 1.5 * hurry;
+        assert!((valve.speed_m_s(-0.3, 78.5e3) - wanted_m_s).abs() < 1e-12);
     }
 }

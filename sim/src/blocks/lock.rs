@@ -1,0 +1,112 @@
+//! The closed oil of a cylinder as a spring: the linear lock, or the gas of its accumulator.
+
+use xt28_machine::Machine;
+
+use super::Accumulator;
+use crate::effects::AccumulatorGas;
+
+/// Force of the oil against compression: how much further the valve has filled the cylinder than it
+/// is long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lock {
+    stiffness_n_m: f64,
+    gas: Option<(f64, Accumulator)>,
+    reach_m: [f64; 2],
+}
+
+impl Lock {
+    /// The lock of one cylinder. Nominal: linear (paper 3.2).
+    #[must_use]
+    pub fn new(machine: &Machine, gas: &AccumulatorGas) -> Self {
+        let stiffness_n_m = machine.hydraulics.lock_stiffness_n_m;
+        let reach_m = machine.arms.force_max_n / stiffness_n_m;
+        let mut lock = Self { stiffness_n_m, gas: None, reach_m: [-reach_m, reach_m] };
+        if gas.share != 0.0 {
+            let accumulator = Accumulator::new(machine, gas);
+            lock.gas = Some((gas.share, accumulator));
+            let far_m = reach_m.max(accumulator.top_m());
+            lock.reach_m = [-far_m, far_m];
+            lock.reach_m =
+                [-1.0, 1.0].map(|sign| lock.compression_m(sign * machine.arms.force_max_n));
+        }
+        lock
+    }
+
+    /// Force, N, and its slope, N/m, at `compression_m`.
+    #[must_use]
+    pub fn spring(&self, compression_m: f64) -> [f64; 2] {
+        let force_n = self.stiffness_n_m * compression_m;
+        match &self.gas {
+            None => [force_n, self.stiffness_n_m],
+            Some((share, accumulator)) => {
+                let [gas_n, gas_n_m] = accumulator.spring(compression_m);
+                let blend = |lock: f64, gas: f64| lock + share * (gas - lock);
+                [blend(force_n, gas_n), blend(self.stiffness_n_m, gas_n_m)]
+            }
+        }
+    }
+
+    /// Compression that makes `force_n`, m; no further than the relief valve allows.
+    #[must_use]
+    pub fn compression_m(&self, force_n: f64) -> f64 {
+        if self.gas.is_none() {
+            return force_n / self.stiffness_n_m;
+        }
+        // The force grows with compression everywhere, so halving finds it to the last bit.
+        let [mut low_m, mut high_m] = self.reach_m;
+        for _ in 0..64 {
+            let middle_m = 0.5 * (low_m + high_m);
+            if self.spring(middle_m)[0] < force_n {
+                low_m = middle_m;
+            } else {
+                high_m = middle_m;
+            }
+        }
+        0.5 * (low_m + high_m)
+    }
+
+    /// Compressions at which the relief valve opens, drawn and pushed, m.
+    #[must_use]
+    pub const fn reach_m(&self) -> [f64; 2] {
+        self.reach_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_share(share: f64) -> Lock {
+        Lock::new(&Machine::xt28(), &AccumulatorGas { share, ..AccumulatorGas::default() })
+    }
+
+    #[test]
+    fn the_reach_ends_at_the_relief_force_and_compression_inverts_force() {
+        for share in [0.0, 0.3, 1.0] {
+            let lock = with_share(share);
+            let [drawn_n, pushed_n] = lock.reach_m().map(|x| lock.spring(x)[0]);
+            assert!((drawn_n + 270e3).abs() < 1e-3 && (pushed_n - 270e3).abs() < 1e-3);
+            for force_n in [-14e3, 0.0, 17e3, 55e3, 120e3] {
+                let [made_n, _] = lock.spring(lock.compression_m(force_n));
+                assert!((made_n - force_n).abs() < 1e-3, "{share}: {made_n}");
+            }
+        }
+    }
+
+    /// k = n (p + 1 atm) A² / V: a heavy arm's gas is stiffer by the pressure ratio to 1 + 1/n.
+    #[test]
+    fn gas_is_stiffer_under_heavier_loads_by_the_polytropic_law() {
+        let lock = with_share(1.0);
+        let at = |force_n: f64| lock.spring(lock.compression_m(force_n))[1];
+        let absolute = |force_n: f64| (force_n + 5e5 * 0.00589) / 0.00785 + 1.013e5;
+        let ratio = (absolute(83e3) / absolute(31e3)).powf(1.0 + 1.0 / 1.3);
+        assert!((at(83e3) / at(31e3) / ratio - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_vanishing_share_is_the_linear_lock() {
+        let (nominal, little) = (with_share(0.0), with_share(1e-9));
+        let (a, b) = (nominal.spring(0.03)[0], little.spring(0.03)[0]);
+        assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+}

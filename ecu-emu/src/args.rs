@@ -27,6 +27,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) terrain: Option<PathBuf>,
 
+    /// Effects that the machine has beyond the nominal one (TOML; `xt28 effects` lists them)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) effects: Option<PathBuf>,
+
     /// Seed of the sensor noise; exact sensors without it
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,

@@ -6,10 +6,12 @@ use xt28_dbc::messages::Eec1;
 use xt28_dbc::{Frame, Outbox};
 use xt28_ecus::{ArmEcu, ArmOutputs, DriveEcu, DriveOutputs, Port};
 use xt28_machine::{Machine, PerWheel, SimTime};
-use xt28_sim::{GnssReceiver, Imu, Plant, STEP, Terrain, Vehicle, VehicleState};
+use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Terrain, Vehicle, VehicleState};
 use xt28_ubx::Geodetic;
 
-use crate::engine::Engine;
+use crate::ecu_effects;
+use crate::engine::{self, Engine};
+use crate::inbox::Inbox;
 use crate::receiver::Receiver;
 use crate::wiring;
 
@@ -23,6 +25,8 @@ const SETTLE: Duration = Duration::from_secs(5);
 pub struct EmulatorConfig {
     /// The machine's numbers.
     pub machine: Machine,
+    /// What is true of it beyond the nominal machine: in plant, sensors, ECUs and on the bus.
+    pub effects: Effects,
     /// What it stands on.
     pub terrain: Terrain,
     /// Strokes at the start, m.
@@ -37,11 +41,18 @@ pub struct EmulatorConfig {
 }
 
 impl EmulatorConfig {
-    /// The machine on `terrain`, arms at 0.17 m, noise from `seed`.
+    /// The nominal machine on `terrain`, arms at 0.17 m, noise from `seed`.
     #[must_use]
-    pub const fn new(machine: Machine, terrain: Terrain, seed: Option<u64>) -> Self {
-        let stroke_m = PerWheel::splat(0.17);
-        Self { machine, terrain, stroke_m, load_n: None, seed, origin: Geodetic::BENCH_ORIGIN }
+    pub fn new(machine: Machine, terrain: Terrain, seed: Option<u64>) -> Self {
+        Self {
+            machine,
+            effects: Effects::default(),
+            terrain,
+            stroke_m: PerWheel::splat(0.17),
+            load_n: None,
+            seed,
+            origin: Geodetic::BENCH_ORIGIN,
+        }
     }
 }
 
@@ -51,8 +62,11 @@ pub struct Emulator {
     drive_ecu: DriveEcu,
     arm_out: ArmOutputs,
     drive_out: DriveOutputs,
+    inbox: Inbox,
     engine: Engine,
     eec1_due: SimTime,
+    sensors: Sensors,
+    imu: Imu,
     gnss: GnssReceiver,
     receiver: Receiver,
     gnss_bytes: Vec<u8>,
@@ -64,20 +78,24 @@ impl Emulator {
     #[must_use]
     pub fn new(config: &EmulatorConfig) -> Self {
         let machine = &config.machine;
-        let mut plant = Vehicle::new(machine, &config.terrain, config.stroke_m);
+        let effects = &config.effects;
+        let mut plant = Vehicle::with(machine, effects, &config.terrain, config.stroke_m, STEP);
         let engine = Engine::new(machine.drive.engine_speed_rpm);
         for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
             let setting = wiring::setting(config, plant.state(), engine.speed_rpm());
             plant.step(&setting);
         }
         Self {
-            arm_ecu: ArmEcu::new(machine),
-            drive_ecu: DriveEcu::new(machine),
+            arm_ecu: ecu_effects::arm_ecu(machine, effects),
+            drive_ecu: ecu_effects::drive_ecu(machine, effects),
             arm_out: ArmOutputs::default(),
             drive_out: DriveOutputs::default(),
+            inbox: Inbox::new(effects.bus, config.seed),
             engine,
             eec1_due: SimTime::ZERO,
-            gnss: GnssReceiver::new(machine, config.seed),
+            sensors: Sensors::new(effects),
+            imu: Imu::new(effects),
+            gnss: GnssReceiver::new(machine, effects, config.seed),
             receiver: Receiver::new(config.origin),
             gnss_bytes: Vec::with_capacity(512),
             plant,
@@ -86,6 +104,14 @@ impl Emulator {
 
     /// A frame from the bus that both ECUs sit on (`CAN_1`).
     pub fn on_frame(&mut self, now: SimTime, frame: &Frame) {
+        if self.inbox.is_direct() {
+            self.hear(now, frame);
+        } else {
+            self.inbox.put(now, frame);
+        }
+    }
+
+    fn hear(&mut self, now: SimTime, frame: &Frame) {
         self.arm_ecu.on_frame(now, Port::Can1, frame);
         self.drive_ecu.on_frame(now, Port::Can1, frame);
     }
@@ -93,15 +119,19 @@ impl Emulator {
     /// One tick at `now`: sensors are read, both ECUs run, the plant moves on to the next tick.
     /// Frames for the bus are added to `out`.
     pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
+        while let Some((at, frame)) = self.inbox.take_due(now) {
+            self.hear(at, &frame);
+        }
         let state = *self.plant.state();
-        for frame in wiring::imu_frames(&Imu.step(&state)) {
+        let readings = self.sensors.read(&state);
+        for frame in wiring::imu_frames(&self.imu.step(&state)) {
             self.arm_ecu.on_frame(now, Port::Can2, &frame);
         }
-        let eec1 = self.engine.eec1();
+        let eec1 = engine::eec1(state.engine_speed_rpm);
         self.drive_ecu.on_frame(now, Port::Can3, &eec1);
 
-        self.arm_ecu.tick(now, &wiring::arm_pins(&state), &mut self.arm_out);
-        self.drive_ecu.tick(now, &wiring::drive_pins(&state), &mut self.drive_out);
+        self.arm_ecu.tick(now, &wiring::arm_pins(&readings), &mut self.arm_out);
+        self.drive_ecu.tick(now, &wiring::drive_pins(&readings), &mut self.drive_out);
         for frame in self.drive_out.can3.frames() {
             self.engine.on_frame(frame);
         }

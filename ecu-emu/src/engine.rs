@@ -42,15 +42,14 @@ impl Engine {
         self.speed_rpm += share * (self.requested_rpm - self.speed_rpm);
     }
 
-    /// Speed now, rpm.
+    /// Speed that the governor holds, rpm; under load the engine may turn slower.
     pub(crate) const fn speed_rpm(&self) -> f64 {
         self.speed_rpm
     }
+}
 
-    /// The engine's speed frame.
-    pub(crate) fn eec1(&self) -> Frame {
-        Eec1 { engine_speed_rpm: self.speed_rpm }
-            .encode()
-            .expect("the governor keeps the speed in the frame's range")
-    }
+/// The engine's frame at a speed; a speed that the frame cannot say is said as its nearest.
+pub(crate) fn eec1(speed_rpm: f64) -> Frame {
+    let engine_speed_rpm = speed_rpm.clamp(0.0, SPEED_RANGE_RPM[1]);
+    Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range")
 }

@@ -4,8 +4,10 @@
 //! metres and newtons; `wiring` is the harness between them.
 #![forbid(unsafe_code)]
 
+mod ecu_effects;
 mod emulator;
 mod engine;
+mod inbox;
 mod receiver;
 mod truth;
 mod wiring;

@@ -12,6 +12,7 @@ use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::Terrain;
+use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
 use crate::serial::Serial;
@@ -76,6 +77,9 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     };
     let mut config = EmulatorConfig::new(machine, terrain, args.seed);
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
+    if let Some(path) = &args.effects {
+        config.effects = Overlay::load(path)?.effects();
+    }
     Ok(config)
 }
 

@@ -3,7 +3,7 @@
 use xt28_dbc::Frame;
 use xt28_ecus::{ArmOutputs, ArmPins, DriveOutputs, DrivePins, pins};
 use xt28_machine::{PerWheel, Wheel};
-use xt28_sim::{Actuation, ImuSample, VehicleState};
+use xt28_sim::{Actuation, ImuSample, Readings, VehicleState};
 
 use crate::EmulatorConfig;
 
@@ -11,7 +11,7 @@ use crate::EmulatorConfig;
 const SUPPLY_MV: f64 = 24_000.0;
 
 /// What the pendulum-arm ECU's sensors put on its pins.
-pub(crate) fn arm_pins(s: &VehicleState) -> ArmPins {
+pub(crate) fn arm_pins(s: &Readings) -> ArmPins {
     ArmPins {
         stroke_mv: s.stroke_m.map(pins::stroke_mv),
         pressure_a_mv: s.pressure_a_pa.map(pins::pressure_mv),
@@ -21,7 +21,7 @@ pub(crate) fn arm_pins(s: &VehicleState) -> ArmPins {
 }
 
 /// What the transmission ECU's sensors put on its pins.
-pub(crate) fn drive_pins(s: &VehicleState) -> DrivePins {
+pub(crate) fn drive_pins(s: &Readings) -> DrivePins {
     DrivePins {
         joint_front_mv: pins::joint_front_mv(s.joint_rad[0]),
         joint_rear_mv: pins::joint_rear_mv(s.joint_rad[1]),

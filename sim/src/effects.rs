@@ -1,9 +1,9 @@
 //! What the nominal machine leaves out: every effect's parameters, neutral unless set.
 //!
-//! One file an effect, one folder a block: what it is, where it acts, its parameters with unit, tolerance and range, its
-//! law and a source. Blocks read [`Effects`] when they are built; an effect at its neutral values
-//! changes no bit of what the plant does. [`CATALOGUE`] lists them all, so that an overlay file, a
-//! trainer and a diagnoser reach every parameter by name.
+//! One folder a block, one file an effect: what it is, where it acts, its parameters with unit,
+//! tolerance and range, its law and a source. Blocks read [`Effects`] when they are built; an effect
+//! at its neutral values changes no bit of what the plant does. [`CATALOGUE`] lists them all, so that
+//! an overlay file, a trainer and a diagnoser reach every parameter by name.
 
 mod arms;
 mod bus;
@@ -11,7 +11,6 @@ mod catalogue;
 mod delay_line;
 mod drive;
 mod effect;
-mod first_order;
 mod ground;
 mod lag;
 mod overlay;
@@ -34,7 +33,6 @@ pub use drive::{
     DriveEffects, DriveLag, EngineDroop, RollingResistance, StandstillDrag, ThrottleDelay,
 };
 pub use effect::{Block, Effect, Parameter, Slot};
-pub use first_order::first_order;
 pub use ground::TerrainSlope;
 pub use lag::Lag;
 pub use overlay::{Entry, Overlay, OverlayError};

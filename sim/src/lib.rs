@@ -30,7 +30,7 @@ pub use parts::{
 };
 pub use plant::{Plant, STEP};
 pub use rapier::RapierBodies;
-pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample};
+pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample, Readings, Sensors};
 pub use state::VehicleState;
 pub use vehicle::Vehicle;
 pub use xt28_terrain::{self as terrain, Ramp, Terrain, TerrainError, TerrainSpec};

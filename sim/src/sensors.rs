@@ -2,6 +2,8 @@
 
 mod gnss;
 mod imu;
+mod readings;
 
 pub use gnss::{GnssFix, GnssReceiver};
 pub use imu::{Imu, ImuSample};
+pub use readings::{Readings, Sensors};

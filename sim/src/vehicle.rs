@@ -52,7 +52,11 @@ impl<B: Bodies> Vehicle<B> {
             actuators: Actuators::new(machine, effects, stroke_m, step_s),
             front_com_m: parts.frames[0].com_m,
             gravity_m_s2: parts.gravity_m_s2,
-            antenna_m: machine.sensors.gnss_antenna_m,
+            antenna_m: {
+                let ([x, y, z], lever) =
+                    (machine.sensors.gnss_antenna_m, effects.sensors.gnss_lever_arm);
+                [x + lever.x_m, y + lever.y_m, z]
+            },
             step_s,
             state: VehicleState::default(),
         };

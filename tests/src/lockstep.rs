@@ -66,13 +66,16 @@ impl<W: Write> Lockstep<W> {
     /// # Errors
     /// [`RunError::Policy`].
     pub fn new(setup: &Setup, log: W) -> Result<Self, RunError> {
-        let Setup { scenario, machine, seed } = setup;
+        let Setup { scenario, machine, overlay, seed } = setup;
         let policy = setup
             .policy()
             .map_err(|source| RunError::Policy { policy_at: scenario.policy_at.clone(), source })?;
         let mut bus = VirtualBus::new(Bitrate::MBIT_1);
         bus.enable_tap();
-        let config = EmulatorConfig::new(machine.clone(), setup.terrain(), Some(*seed));
+        let config = EmulatorConfig {
+            effects: overlay.effects(),
+            ..EmulatorConfig::new(machine.clone(), setup.terrain(), Some(*seed))
+        };
         let emulator = (bus.attach("emulator"), Emulator::new(&config));
         let gateway = Gateway::new(machine, GatewayConfig::new(machine), policy);
         let gateway = (bus.attach("gateway"), gateway);

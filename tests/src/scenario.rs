@@ -5,6 +5,7 @@ use std::{fmt, io};
 
 use serde::Deserialize;
 use xt28_sim::Ramp;
+use xt28_sim::effects::Entry;
 
 use crate::{Expectation, ScenarioError};
 
@@ -19,6 +20,9 @@ pub struct Scenario {
     pub title: String,
     /// Machine file, relative to the scenario file; the built-in machine when left out.
     pub machine: Option<PathBuf>,
+    /// What the machine has beyond the nominal one, as an overlay file says it.
+    #[serde(default, rename = "effect")]
+    pub effects: Vec<Entry>,
     /// The ground.
     #[serde(default)]
     pub terrain: Ground,

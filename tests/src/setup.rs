@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use gateway::policy::{self, Policy, SpecError};
 use xt28_machine::{Machine, MachineError};
 use xt28_sim::Terrain;
+use xt28_sim::effects::Overlay;
 
 use crate::trace::Trace;
 use crate::{Evidence, Finding, Ground, Scenario, Script, Truth};
@@ -16,6 +17,8 @@ pub struct Setup {
     pub scenario: Scenario,
     /// The machine it names.
     pub machine: Machine,
+    /// What it has beyond the nominal one.
+    pub overlay: Overlay,
     /// Seed of all noise.
     pub seed: u64,
 }
@@ -31,7 +34,8 @@ impl Setup {
             None => Machine::xt28(),
         };
         let seed = seed.unwrap_or(scenario.seed);
-        Ok(Self { scenario, machine, seed })
+        let overlay = Overlay { entries: scenario.effects.clone() };
+        Ok(Self { scenario, machine, overlay, seed })
     }
 
     /// The policy that drives.

@@ -62,7 +62,7 @@ impl Rig {
         let (mode, counter) = (ArmTargetMode::Automatic, self.counter.next_count());
         let target = ArmTarget { fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm, mode, counter };
         self.ecu.on_frame(self.now, Port::Can1, &target.encode().expect("in range"));
-        let imu = Imu.step(&s);
+        let imu = Imu::default().step(&s);
         for frame in pins::imu_frames(imu.rate_rad_s, imu.specific_force_m_s2) {
             self.ecu.on_frame(self.now, Port::Can2, &frame);
         }

@@ -6,8 +6,10 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
-use crate::effects::{DelayLine, DriveEffects, Effects, StandstillDrag, first_order};
+use crate::effects::{DelayLine, DriveEffects, Effects, Lag, StandstillDrag};
 
+/// Time in which the engine's speed answers to load, s (assumed).
+const ENGINE_ANSWER_S: f64 = 0.2;
 /// Speed ratio of the sequence law: full displacement of pump and motors is a third of full speed.
 const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 /// Charge pressure of the closed circuits, Pa (assumed).
@@ -38,8 +40,9 @@ pub struct Drive {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveState {
     asked_rad_s: [DelayLine; 2],
-    target_rad_s: [f64; 2],
-    felt_power_w: f64,
+    target_rad_s: [Lag; 2],
+    felt_power_w: Lag,
+    power_w: f64,
     /// Integral part of the torque that holds the mean speed, Nm a wheel.
     pub mean_torque_nm: f64,
 }
@@ -105,7 +108,8 @@ impl Drive {
     pub fn step(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> DriveOutput {
         let droop = &self.effects.engine_droop;
         let governed_rpm = input.engine_speed_rpm;
-        let engine_speed_rpm = governed_rpm * droop.speed_share(state.felt_power_w);
+        let felt_w = state.felt_power_w.step(state.power_w, ENGINE_ANSWER_S, dt_s);
+        let engine_speed_rpm = governed_rpm * droop.speed_share(felt_w);
         let input = &DriveInput { engine_speed_rpm, ..*input };
         let targets = self.targets_rad_s(state, input, dt_s);
         let means = [0, 1].map(|c| self.mean_rad_s(c, input));
@@ -131,20 +135,18 @@ impl Drive {
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
         self.integrate(state, mean_error, &circuit_nm, limit, dt_s);
-        state.felt_power_w = droop.felt_w(state.felt_power_w, out.power_w, dt_s);
+        state.power_w = out.power_w;
         out
     }
 
     /// What each circuit is to do, once displacement has become speed, rad/s.
     fn targets_rad_s(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> [f64; 2] {
         let e = &self.effects;
-        for c in 0..2 {
+        core::array::from_fn(|c| {
             let asked = self.target_rad_s(c, input);
             let arrived = state.asked_rad_s[c].step(asked, e.throttle_delay.delay_s, dt_s);
-            state.target_rad_s[c] =
-                first_order(state.target_rad_s[c], arrived, e.lag.time_constant_s, dt_s);
-        }
-        state.target_rad_s
+            state.target_rad_s[c].step(arrived, e.lag.time_constant_s, dt_s)
+        })
     }
 
     /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
@@ -309,7 +311,7 @@ mod tests {
             for _ in 0..steps {
                 drive.step(&mut state, &input(0.1, 0.0), DT_S);
             }
-            state.target_rad_s[0]
+            state.target_rad_s[0].step(0.0, f64::INFINITY, DT_S)
         };
         assert!((after(80) / after(2000) - 0.632).abs() < 1e-3);
     }

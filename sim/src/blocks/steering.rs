@@ -6,7 +6,7 @@
 
 use xt28_machine::Machine;
 
-use crate::effects::{DelayLine, SteeringEffects, first_order};
+use crate::effects::{DelayLine, Lag, SteeringEffects};
 
 /// Parameters of one articulation joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Steering {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteeringState {
     commands: DelayLine,
-    spool: f64,
+    spool: Lag,
     oil_rad: f64,
     /// Angle at which the oil makes no torque, rad; left > 0.
     pub rest_rad: f64,
@@ -68,8 +68,8 @@ impl Steering {
         let e = &self.effects;
         let asked = input.opening.clamp(-1.0, 1.0);
         let arrived = state.commands.step(asked, e.delay.delay_s, dt_s);
-        state.spool = first_order(state.spool, arrived, e.lag.time_constant_s, dt_s);
-        let rate_rad_s = state.spool * self.rate_max_rad_s * e.rate.factor;
+        let spool = state.spool.step(arrived, e.lag.time_constant_s, dt_s);
+        let rate_rad_s = spool * self.rate_max_rad_s * e.rate.factor;
         let reach = self.torque_max_nm / self.stiffness_nm + 0.5 * e.backlash.width_rad;
         // Where the joint will be: a limit around where it was would give way to its own motion.
         let angle = input.angle_rad + input.rate_rad_s * dt_s;

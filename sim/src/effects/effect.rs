@@ -1,5 +1,7 @@
 //! An effect as data: its name, its block and its parameters, each with a place in [`Effects`].
 
+use core::fmt;
+
 use xt28_machine::Wheel;
 
 use super::{Effects, Scope};
@@ -23,6 +25,22 @@ pub enum Block {
     Sensor,
     /// What reaches the ECU, and when.
     Bus,
+}
+
+impl fmt::Display for Block {
+    /// The block's name in verdicts.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Arms => "arms",
+            Self::Steering => "steering",
+            Self::Drive => "drive",
+            Self::Tyre => "tyre",
+            Self::Payload => "payload",
+            Self::Ground => "ground",
+            Self::Sensor => "sensor",
+            Self::Bus => "bus",
+        })
+    }
 }
 
 /// Something real that the nominal plant leaves out.
@@ -62,6 +80,20 @@ pub enum Slot {
     PerWheel(fn(&mut Effects, Wheel) -> &mut f64),
     /// One for the machine.
     Whole(fn(&mut Effects) -> &mut f64),
+}
+
+/// A name stands for one effect.
+impl PartialEq for Effect {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// A parameter sits in one place; its name alone may stand in many effects.
+impl PartialEq for Parameter {
+    fn eq(&self, other: &Self) -> bool {
+        core::ptr::eq(self, other)
+    }
 }
 
 impl Effect {

@@ -9,24 +9,25 @@
 //! ```
 
 use core::fmt::Write as _;
-use core::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::effect::{Effect, Parameter};
 use super::{Effects, Scope, find};
 
 /// A list of effects to add to a plant. Where two set the same number, the later one counts.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Overlay {
     /// The effects, in the order of the file.
+    #[serde(default, rename = "effect")]
     pub entries: Vec<Entry>,
 }
 
-/// One effect of an overlay.
-#[derive(Clone, Debug)]
+/// One effect of an overlay: a table that other files may hold as well.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "toml::Table")]
 pub struct Entry {
     /// Which effect.
     pub effect: &'static Effect,
@@ -61,13 +62,6 @@ pub enum OverlayError {
     },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    effect: Vec<Spanned<toml::Table>>,
-}
-
 impl Overlay {
     /// An overlay from a file.
     ///
@@ -84,19 +78,12 @@ impl Overlay {
     /// # Errors
     /// [`OverlayError::Parse`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, OverlayError> {
-        let refuse = |span: Range<usize>, problem: String| {
-            let before = &text.as_bytes()[..span.start.min(text.len())];
-            let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
+        toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start.min(text.len()));
+            let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
+            let problem = error.message().replace('\n', " ");
             OverlayError::Parse { path: path.to_owned(), line, problem }
-        };
-        let file: File = toml::from_str(text).map_err(|error| {
-            refuse(error.span().unwrap_or(0..0), error.message().replace('\n', " "))
-        })?;
-        let entries = file.effect.into_iter().map(|table| {
-            let span = table.span();
-            Entry::read(table.get_ref()).map_err(|problem| refuse(span, problem))
-        });
-        Ok(Self { entries: entries.collect::<Result<_, _>>()? })
+        })
     }
 
     /// The values of all its effects, neutral elsewhere.
@@ -128,8 +115,10 @@ impl Overlay {
     }
 }
 
-impl Entry {
-    fn read(table: &toml::Table) -> Result<Self, String> {
+impl TryFrom<toml::Table> for Entry {
+    type Error = String;
+
+    fn try_from(table: toml::Table) -> Result<Self, String> {
         let name = table.get("name").and_then(toml::Value::as_str);
         let name = name.ok_or("an effect needs a name = \"...\"")?;
         let effect = find(name).ok_or_else(|| {
@@ -137,7 +126,7 @@ impl Entry {
             format!("\"{name}\" is no effect; known are {}", names.join(", "))
         })?;
         let mut entry = Self { effect, scope: Scope::All, severity: 1.0, values: Vec::new() };
-        for (key, value) in table {
+        for (key, value) in &table {
             match key.as_str() {
                 "name" => {}
                 "scope" => {
@@ -159,7 +148,9 @@ impl Entry {
         }
         Ok(entry)
     }
+}
 
+impl Entry {
     /// Sets its parameters in `effects`.
     pub fn apply(&self, effects: &mut Effects) {
         for (parameter, value) in &self.values {

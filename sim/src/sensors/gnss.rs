@@ -7,7 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use xt28_machine::{Machine, SimTime};
 
-use crate::VehicleState;
+use crate::effects::DelayLine;
+use crate::{Effects, VehicleState};
 
 /// One fix of the antenna's position in the local frame: x east, y north, z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,47 @@ pub struct GnssReceiver {
     period: Duration,
     due: SimTime,
     accuracy_m: f64,
+    delay_s: f64,
+    past: Past,
     noise: Option<Noise>,
+}
+
+/// How often a late receiver looks at the antenna, s.
+const LOOK_S: f64 = 0.01;
+
+/// Where the antenna was, for a receiver that is late.
+#[derive(Clone, Debug, Default)]
+struct Past {
+    position: [DelayLine; 3],
+    velocity: [DelayLine; 3],
+    /// Cosine and sine: an angle would jump at half a turn.
+    heading: [DelayLine; 2],
+}
+
+impl Past {
+    fn new(delay_s: f64) -> Self {
+        let line = |value| DelayLine::new(delay_s, LOOK_S, value);
+        Self {
+            position: [(); 3].map(|()| line(0.0)),
+            velocity: [(); 3].map(|()| line(0.0)),
+            heading: [line(1.0), line(0.0)],
+        }
+    }
+
+    /// Takes in where the antenna is; gives the state with the antenna where it was.
+    fn step(&mut self, state: &VehicleState, delay_s: f64) -> VehicleState {
+        let mut then = *state;
+        for axis in 0..3 {
+            let now = state.antenna_position_m[axis];
+            then.antenna_position_m[axis] = self.position[axis].step(now, delay_s, LOOK_S);
+            let now = state.antenna_velocity_m_s[axis];
+            then.antenna_velocity_m_s[axis] = self.velocity[axis].step(now, delay_s, LOOK_S);
+        }
+        let cos = self.heading[0].step(state.yaw_rad.cos(), delay_s, LOOK_S);
+        let sin = self.heading[1].step(state.yaw_rad.sin(), delay_s, LOOK_S);
+        then.yaw_rad = sin.atan2(cos);
+        then
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -45,13 +86,15 @@ struct Noise {
 impl GnssReceiver {
     /// A receiver with the paper's noise (section 4.4) drawn from `seed`, or exact without a seed.
     #[must_use]
-    pub fn new(machine: &Machine, seed: Option<u64>) -> Self {
+    pub fn new(machine: &Machine, effects: &Effects, seed: Option<u64>) -> Self {
         let s = &machine.sensors;
         let normal = |sigma: f64| Normal::new(0.0, sigma.max(0.0)).expect("a finite deviation");
         Self {
             period: Duration::from_secs_f64(1.0 / s.gnss_rate_hz),
             due: SimTime::ZERO,
             accuracy_m: s.gnss_position_m,
+            delay_s: effects.sensors.gnss_latency.delay_s,
+            past: Past::new(effects.sensors.gnss_latency.delay_s),
             noise: seed.map(|seed| Noise {
                 random: ChaCha8Rng::seed_from_u64(seed),
                 position_m: normal(s.gnss_position_m),
@@ -62,8 +105,10 @@ impl GnssReceiver {
         }
     }
 
-    /// The fix that is due at `now`, if one is.
+    /// The fix that is due at `now`, if one is. To be asked every 10 ms.
     pub fn step(&mut self, now: SimTime, state: &VehicleState) -> Option<GnssFix> {
+        let late = (self.delay_s > 0.0).then(|| self.past.step(state, self.delay_s));
+        let state = late.as_ref().unwrap_or(state);
         if now < self.due {
             return None;
         }
@@ -94,7 +139,7 @@ mod tests {
     #[test]
     fn eight_fixes_a_second_with_the_stated_noise() {
         let machine = Machine::xt28();
-        let mut receiver = GnssReceiver::new(&machine, Some(7));
+        let mut receiver = GnssReceiver::new(&machine, &Effects::default(), Some(7));
         let state = VehicleState::default();
         let fixes: Vec<GnssFix> = (0..100_000)
             .filter_map(|tick| receiver.step(SimTime::from_millis(tick * 10), &state))
@@ -113,8 +158,35 @@ mod tests {
     fn the_same_seed_gives_the_same_fixes() {
         let machine = Machine::xt28();
         let state = VehicleState::default();
-        let fix = |seed| GnssReceiver::new(&machine, Some(seed)).step(SimTime::ZERO, &state);
+        let fix = |seed| {
+            GnssReceiver::new(&machine, &Effects::default(), Some(seed)).step(SimTime::ZERO, &state)
+        };
         assert_eq!(fix(3), fix(3));
         assert_ne!(fix(3), fix(4));
+    }
+
+    #[test]
+    fn a_late_receiver_shows_where_the_antenna_was() {
+        let mut effects = Effects::default();
+        effects.sensors.gnss_latency.delay_s = 0.25;
+        let mut receiver = GnssReceiver::new(&Machine::xt28(), &effects, None);
+        let mut fixes = 0;
+        for tick in 0..200 {
+            let t = f64::from(tick) * LOOK_S;
+            let state = VehicleState {
+                antenna_position_m: [1.5 * t, 0.0, 3.0],
+                antenna_velocity_m_s: [1.5, 0.0, 0.0],
+                yaw_rad: 3.0 + 0.4 * t,
+                ..VehicleState::default()
+            };
+            let fix = receiver.step(SimTime::from_millis(10 * tick as u64), &state);
+            if let (Some(fix), true) = (fix, t > 0.3) {
+                assert!((fix.position_m[0] - 1.5 * (t - 0.25)).abs() < 1e-9);
+                let turned = fix.heading_rad - (3.0 + 0.4 * (t - 0.25));
+                assert!(turned.sin().abs() < 1e-6, "{turned}");
+                fixes += 1;
+            }
+        }
+        assert!(fixes > 10);
     }
 }

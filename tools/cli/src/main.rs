@@ -5,6 +5,7 @@
 
 mod artefacts;
 mod config;
+mod effects;
 mod pace;
 #[cfg(target_os = "linux")]
 mod processes;
@@ -35,6 +36,7 @@ enum Command {
     Run(run::Run),
     Replay(replay::Replay),
     Scenarios(scenarios::Scenarios),
+    Effects(effects::Effects),
     Config(config::Config),
 }
 
@@ -56,6 +58,7 @@ fn main() -> ExitCode {
         Some(Command::Run(run)) => run.execute(),
         Some(Command::Replay(replay)) => replay.execute(),
         Some(Command::Scenarios(scenarios)) => scenarios.execute(),
+        Some(Command::Effects(effects)) => effects.execute(),
         Some(Command::Config(config)) => config.execute(),
     };
     match outcome {

@@ -119,6 +119,11 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());
     }
+    if !setup.overlay.entries.is_empty() {
+        let file = folder.join("effects.toml");
+        fs::write(&file, setup.overlay.to_toml())?;
+        add("--effects", file.display().to_string());
+    }
     if let Ground::Ramp(ramp) = &setup.scenario.terrain {
         let [foot, crest, end, out] = ramp.x_m;
         let file = folder.join("terrain.toml");

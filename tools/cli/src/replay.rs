@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay as Run, Terrain};
 use xt28_machine::Machine;
+use xt28_sim::effects::Overlay;
 
 use crate::{Failure, Verdict};
 
@@ -22,6 +23,9 @@ pub(crate) struct Replay {
     /// Machine file (TOML); the built-in machine when left out
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
+    /// Effects that our machine gets (TOML; see `xt28 effects`); the nominal machine without it
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
     /// Terrain file (TOML); else as about.toml says, else flat
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
@@ -46,7 +50,9 @@ impl Replay {
         let decoder = Decoder::load(&self.dbc, &mapping)?;
         let log = FieldLog::load(&self.log, &decoder, self.accept_cut)?;
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
-        let replay = Run::run(&log, &machine, &self.ground()?)?;
+        let effects =
+            self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
+        let replay = Run::run(&log, &machine, &effects.effects(), &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {
             println!("{:#}", report.json());

@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup};
+use xt28_sim::effects::Overlay;
 
 use crate::artefacts::Artefacts;
 use crate::pace::Pace;
@@ -19,6 +20,9 @@ pub(crate) struct Run {
     /// Seed of all noise, instead of the scenario's own
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Effects that the machine gets beside the scenario's own (TOML; see `xt28 effects`)
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
     /// `virtual`, or a CAN interface such as vcan0, where emulator and gateway run as programs
     #[arg(long, default_value = VIRTUAL, value_name = "BUS")]
     bus: String,
@@ -44,6 +48,7 @@ impl Run {
         Self {
             scenario: "straight-25m".to_owned(),
             seed: None,
+            effects: None,
             bus: VIRTUAL.to_owned(),
             realtime: false,
             record: None,
@@ -53,7 +58,10 @@ impl Run {
     }
 
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
+        let mut setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
+        if let Some(path) = &self.effects {
+            setup.overlay.entries.extend(Overlay::load(path)?.entries);
+        }
         let name = &setup.scenario.name;
         let artefacts = Artefacts::new(name, self.record.as_deref(), self.out.as_deref())?;
         let (recording, cost) = if self.bus == VIRTUAL {

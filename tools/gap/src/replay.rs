@@ -19,7 +19,7 @@ use std::time::Duration;
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use xt28_dbc::{Outbox, XT28_DBC};
 use xt28_machine::{Machine, PerWheel, SimTime};
-use xt28_sim::Terrain;
+use xt28_sim::{Effects, Terrain};
 
 use crate::commands::{Command, Speaker, commands};
 use crate::comparison::rows;
@@ -40,11 +40,17 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Runs the commands of `log` on `machine` on `terrain`. Twice the same gives twice the same.
+    /// Runs the commands of `log` on `machine` with `effects` on `terrain`. Twice the same gives
+    /// twice the same.
     ///
     /// # Errors
     /// [`GapError::Command`] for a command that our bus cannot say.
-    pub fn run(log: &FieldLog, machine: &Machine, terrain: &Terrain) -> Result<Self, GapError> {
+    pub fn run(
+        log: &FieldLog,
+        machine: &Machine,
+        effects: &Effects,
+        terrain: &Terrain,
+    ) -> Result<Self, GapError> {
         let commands = commands(log, machine.drive.engine_speed_rpm)?;
         let first = |channel| log.series(channel).and_then(|s| s.iter().next()).map(|(_, v)| v);
         // Strokes are logged in whole millimetres, cut off: the middle of the step is meant.
@@ -53,6 +59,7 @@ impl Replay {
         });
         let loads = PerWheel::from_fn(|wheel| first(Channel::CylinderLoad(wheel)));
         let config = EmulatorConfig {
+            effects: effects.clone(),
             stroke_m,
             load_n: loads
                 .0

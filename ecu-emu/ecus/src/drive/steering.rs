@@ -32,6 +32,8 @@ pub struct SteeringGains {
     pub ki_per_s: f64,
     /// Where the rear joint should be, as a share of where the front one is.
     pub rear_ratio: f64,
+    /// Time constant of a filter on the front angle that the rear joint follows, s; 0 for none.
+    pub rear_time_constant_s: f64,
     /// Up to this speed the joints hold, m/s.
     pub speed_threshold_m_s: f64,
 }
@@ -44,6 +46,7 @@ impl SteeringGains {
             kp_per_deg: articulation.kp_per_deg,
             ki_per_s: articulation.ki_per_s,
             rear_ratio: articulation.rear_ratio,
+            rear_time_constant_s: 0.0,
             speed_threshold_m_s: articulation.speed_threshold_m_s,
         }
     }
@@ -55,12 +58,24 @@ pub(crate) struct Steering {
     gains: SteeringGains,
     front: JointControl,
     rear: JointControl,
+    /// The front angle as the rear joint follows it; none before the first tick.
+    followed_deg: Option<f64>,
 }
 
 impl Steering {
     pub(crate) fn new(articulation: &Articulation) -> Self {
         let gains = SteeringGains::new(articulation);
-        Self { gains, front: JointControl::default(), rear: JointControl::default() }
+        Self {
+            gains,
+            front: JointControl::default(),
+            rear: JointControl::default(),
+            followed_deg: None,
+        }
+    }
+
+    /// The gains in force.
+    pub(crate) const fn gains(&self) -> SteeringGains {
+        self.gains
     }
 
     /// Takes other gains; what the integrals hold stays.
@@ -77,12 +92,25 @@ impl Steering {
         [front_deg, rear_deg]: [f64; 2],
         speed_m_s: f64,
     ) -> [f64; 2] {
+        let followed_deg = self.follow(front_deg);
         if speed_m_s.abs() <= self.gains.speed_threshold_m_s {
             return self.hold();
         }
         let front_error_deg = target_deg - front_deg;
-        let rear_error_deg = self.gains.rear_ratio * front_deg - rear_deg;
+        let rear_error_deg = self.gains.rear_ratio * followed_deg - rear_deg;
         [self.front.step(&self.gains, front_error_deg), self.rear.step(&self.gains, rear_error_deg)]
+    }
+
+    fn follow(&mut self, front_deg: f64) -> f64 {
+        let before_deg = self.followed_deg.unwrap_or(front_deg);
+        let time_constant_s = self.gains.rear_time_constant_s;
+        let followed_deg = if time_constant_s > 0.0 {
+            front_deg + (before_deg - front_deg) * (-PERIOD_S / time_constant_s).exp()
+        } else {
+            front_deg
+        };
+        self.followed_deg = Some(followed_deg);
+        followed_deg
     }
 
     /// Closed valves, and both integrals forgotten.
@@ -119,6 +147,18 @@ mod tests {
         assert_eq!(steering.step(25.0, [0.0; 2], 0.0833), [0.0; 2]);
         let [front, _] = steering.step(0.0, [0.0; 2], -0.09);
         assert_eq!(front, 0.0, "the integral was reset");
+    }
+
+    #[test]
+    fn a_filter_lets_the_rear_follow_late() {
+        let mut late = steering();
+        let gains = SteeringGains { rear_time_constant_s: 0.5, ..late.gains };
+        late.set_gains(gains);
+        late.step(0.0, [0.0; 2], 0.5);
+        let rear: Vec<f64> = (0..51).map(|_| late.step(10.0, [10.0, 0.0], 0.5)[1]).collect();
+        let prompt = steering().step(10.0, [10.0, 0.0], 0.5)[1];
+        assert!(rear[0] < 0.03 * prompt, "{}", rear[0]);
+        assert!((late.followed_deg.unwrap() - 10.0 * (1.0 - (-1.02_f64).exp())).abs() < 1e-9);
     }
 
     #[test]

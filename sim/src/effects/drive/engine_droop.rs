@@ -2,9 +2,6 @@
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
-/// Time in which the engine's speed answers to load, s (assumed).
-const ANSWER_S: f64 = 0.2;
-
 /// How the engine gives way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EngineDroop {
@@ -25,12 +22,6 @@ impl EngineDroop {
     #[must_use]
     pub fn speed_share(&self, power_w: f64) -> f64 {
         (1.0 - self.droop_per_w * power_w.max(0.0)).max(0.5)
-    }
-
-    /// The load as the speed has answered to it, W, `dt_s` s later.
-    #[must_use]
-    pub fn felt_w(&self, felt_w: f64, power_w: f64, dt_s: f64) -> f64 {
-        felt_w + (1.0 - (-dt_s / ANSWER_S).exp()) * (power_w - felt_w)
     }
 }
 

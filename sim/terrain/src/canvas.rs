@@ -1,7 +1,7 @@
 //! Heights while layers are being added to them; a grid once they all are.
 
-use crate::grid::{Grid, PER_M};
 use crate::Extent;
+use crate::grid::{Grid, PER_M};
 
 /// Heights on the grid points of an extent, in double precision until the last layer is on.
 pub(crate) struct Canvas {

@@ -14,8 +14,7 @@ use toml::Spanned;
 use crate::{Terrain, TerrainError, TerrainSpec};
 
 /// What may stand behind `kind`.
-const KINDS: &str =
-    "flat, slope, ramp, step, perlin, bumps, course, boulders, height_map";
+const KINDS: &str = "flat, slope, ramp, step, perlin, bumps, course, boulders, height_map";
 
 impl Terrain {
     /// A terrain from a file.
@@ -201,8 +200,12 @@ mod tests {
     fn both_forms_say_the_same() {
         assert_eq!(parse("kind = \"flat\"").unwrap(), Terrain::Flat);
         assert!((parse(RAMP).unwrap().height_m(8.0, -1.0) - 0.3).abs() < 1e-6);
-        assert_eq!(parse(RAMP).unwrap(), parse(&RAMP.replace("kind = \"ramp\"", "[ramp]")).unwrap());
-        let kinds = KINDS.split(", ").filter(|kind| !["flat", "height_map", "course"].contains(kind));
+        assert_eq!(
+            parse(RAMP).unwrap(),
+            parse(&RAMP.replace("kind = \"ramp\"", "[ramp]")).unwrap()
+        );
+        let kinds =
+            KINDS.split(", ").filter(|kind| !["flat", "height_map", "course"].contains(kind));
         for kind in kinds {
             // Every kind is known, and then lacks its keys.
             assert!(refusal(&format!("kind = \"{kind}\"")).contains("missing field"), "{kind}");

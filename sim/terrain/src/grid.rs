@@ -39,11 +39,7 @@ impl Grid {
     /// As [`Self::from_fn`], on ground that goes on rising by `beyond` (along x, along y; m/m)
     /// outside the extent. The function gives whole heights, the slope included.
     #[must_use]
-    pub fn on_slope(
-        extent: Extent,
-        beyond: [f64; 2],
-        height_m: impl Fn(f64, f64) -> f64,
-    ) -> Self {
+    pub fn on_slope(extent: Extent, beyond: [f64; 2], height_m: impl Fn(f64, f64) -> f64) -> Self {
         let mut canvas = Canvas::new(extent);
         canvas.add(height_m);
         canvas.into_grid(beyond)
@@ -101,19 +97,14 @@ impl Grid {
         [(self.first[0] + column) as f64 / PER_M, (self.first[1] + row) as f64 / PER_M]
     }
 
-    /// Position of grid point (`column`, `row`), m; also of points beyond the grid.
-    #[allow(clippy::cast_precision_loss)]
-    pub(crate) fn point_m(&self, column: i64, row: i64) -> [f64; 3] {
-        let (c, r) = self.clamped(column, row);
-        let [x_m, y_m] = self.plan_m(column, row);
-        let height = f64::from(self.height_m[r * self.columns + c]);
-        #[allow(clippy::cast_possible_wrap)]
-        let (over, past) = (column - c as i64, row - r as i64);
-        if over == 0 && past == 0 {
-            return [x_m, y_m, height];
-        }
-        let rise = self.beyond[0] * over as f64 + self.beyond[1] * past as f64;
-        [x_m, y_m, height + rise / PER_M]
+    /// Height of a grid point that may lie beyond the grid, m.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
+    #[allow(clippy::cast_possible_wrap)]
+    pub(crate) fn height_beyond_m(&self, column: i64, row: i64) -> f32 {
+        let clamp = |index: i64, count: usize| index.clamp(0, count as i64 - 1);
+        let (c, r) = (clamp(column, self.columns), clamp(row, self.rows));
+        let rise = self.beyond[0] * (column - c) as f64 + self.beyond[1] * (row - r) as f64;
+        self.height_m[r as usize * self.columns + c as usize] + (rise / PER_M) as f32
     }
 
     /// The column and row of the cell that a point lies in, counted on beyond the grid.
@@ -123,12 +114,9 @@ impl Grid {
         [index(x_m, self.first[0]), index(y_m, self.first[1])]
     }
 
-    /// The highest point of a block of cells, m; `None` for a block that is not all on the grid.
-    pub(crate) fn block_top_m(&self, block: [i64; 2]) -> Option<f32> {
-        let [across, up] = [self.columns, self.rows].map(|n| (n - 1) / BLOCK);
-        let column = usize::try_from(block[0]).ok().filter(|&c| c < across)?;
-        let row = usize::try_from(block[1]).ok().filter(|&r| r < up)?;
-        Some(self.block_top_m[row * across + column])
+    /// The highest point of a block of cells, m.
+    pub(crate) fn block_top_m(&self, column: usize, row: usize) -> f32 {
+        self.block_top_m[row * blocks(self.columns) + column]
     }
 
     /// Height on the triangle under a point, m. Never a cliff beyond the grid; 0 for a NaN on level
@@ -160,23 +148,27 @@ impl Grid {
         }
         on_grid + (self.beyond[0] * (u - on_u) + self.beyond[1] * (v - on_v)) / PER_M
     }
-
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
-    fn clamped(&self, column: i64, row: i64) -> (usize, usize) {
-        let clamp = |index: i64, count: usize| index.clamp(0, count as i64 - 1) as usize;
-        (clamp(column, self.columns), clamp(row, self.rows))
-    }
 }
 
-/// The highest point of each whole block of cells.
+/// Blocks along a side of `points` grid points; the last may lack cells.
+const fn blocks(points: usize) -> usize {
+    (points - 1).div_ceil(BLOCK)
+}
+
+/// The highest point of each block of cells.
 fn block_tops(height_m: &[f32], columns: usize, rows: usize) -> Vec<f32> {
-    let [across, up] = [columns, rows].map(|n| (n - 1) / BLOCK);
-    let mut tops = Vec::with_capacity(across * up);
-    for block_row in 0..up {
-        for block in 0..across {
-            let first = block_row * BLOCK * columns + block * BLOCK;
-            let rows = (0..=BLOCK).map(|r| &height_m[first + r * columns..][..=BLOCK]);
-            tops.push(rows.flatten().copied().fold(f32::MIN, f32::max));
+    let mut tops = vec![f32::MIN; blocks(columns) * blocks(rows)];
+    for row in 0..rows {
+        for column in 0..columns {
+            let height = height_m[row * columns + column];
+            // A point on the border belongs to the blocks on both sides.
+            for block_row in row.saturating_sub(1) / BLOCK..=(row / BLOCK).min(blocks(rows) - 1) {
+                let low = column.saturating_sub(1) / BLOCK;
+                for block in low..=(column / BLOCK).min(blocks(columns) - 1) {
+                    let top = &mut tops[block_row * blocks(columns) + block];
+                    *top = top.max(height);
+                }
+            }
         }
     }
     tops

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use serde::Serialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
-use serde::Serialize;
 
 use crate::{Boulders, Bumps, Course, Extent, HeightMap, MapSpec, Perlin, Ramp, Slope, Step};
 

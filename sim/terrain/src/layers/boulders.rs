@@ -87,10 +87,7 @@ impl Boulders {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn number(&self, extent: Extent) -> u32 {
         let free_m2 = area_m2(extent.x_m, extent.y_m)
-            - area_m2(
-                overlap(self.clear.x_m, extent.x_m),
-                overlap(self.clear.y_m, extent.y_m),
-            );
+            - area_m2(overlap(self.clear.x_m, extent.x_m), overlap(self.clear.y_m, extent.y_m));
         let by_density = self.density_per_m2.map(|density| (density * free_m2).round() as u32);
         self.count.or(by_density).unwrap_or(0).min(COUNT_MAX)
     }
@@ -143,7 +140,8 @@ impl Boulders {
             }
             _ => {}
         }
-        let between = |[low, high]: [f64; 2], from: f64, to: f64| from <= low && low <= high && high <= to;
+        let between =
+            |[low, high]: [f64; 2], from: f64, to: f64| from <= low && low <= high && high <= to;
         if !between(self.radius_m, 0.1, 20.0) {
             return Err("radius_m must be [least, greatest], 0.1 to 20 m");
         }

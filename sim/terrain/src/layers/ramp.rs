@@ -63,8 +63,7 @@ mod tests {
 
     #[test]
     fn a_ramp_rises_in_its_lane_and_nowhere_else() {
-        let ramp =
-            Ramp { x_m: [4.0, 7.0, 8.5, 11.5], height_m: 0.3, y_min_m: -1.9, y_max_m: -0.5 };
+        let ramp = Ramp { x_m: [4.0, 7.0, 8.5, 11.5], height_m: 0.3, y_min_m: -1.9, y_max_m: -0.5 };
         let terrain = Terrain::ramp(&ramp);
         assert!((terrain.height_m(5.5, -1.175) - 0.15).abs() < 1e-6);
         assert!((terrain.height_m(7.7, -1.175) - 0.3).abs() < 1e-6);

@@ -4,7 +4,7 @@ use xt28_machine::{GRAVITY_M_S2, Linkage, Machine, PerWheel, Wheel};
 
 use crate::blocks::{
     Arm, ArmInput, ArmState, CylinderMotion, Drive, DriveInput, DriveOutput, DriveState,
-    FlowSharing, Steering, SteeringInput, SteeringState,
+    FlowSharing, Steering, SteeringState,
 };
 use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Actuation, Effects, REFERENCE_STROKE_M, VehicleState};
@@ -80,10 +80,13 @@ impl Actuators {
         state: &mut VehicleState,
         dt_s: f64,
     ) -> Loads {
-        let open = self.open_arms(actuation, motion, dt_s);
-        let flow_share = self.flow_share(&open, actuation);
-        let arm = self.fill_arms(&open, flow_share, motion, dt_s);
-        let joint = self.turn_joints(actuation, motion, flow_share, dt_s);
+        let arms = self.open_arms(actuation, motion, dt_s);
+        let joints_rad_s = core::array::from_fn(|i| {
+            self.steering.open(&mut self.joints[i], actuation.steer_opening[i], dt_s)
+        });
+        let flow_share = self.flow_share(&arms, joints_rad_s);
+        let arm = self.fill_arms(&arms, flow_share, motion, dt_s);
+        let joint = self.turn_joints(joints_rad_s, flow_share, motion, dt_s);
         let drive = self.drive_wheels(actuation, motion, dt_s);
         state.wheel_torque_nm = drive.wheel_torque_nm;
         state.pump_pressure_pa = drive.pump_pressure_pa;
@@ -164,30 +167,23 @@ impl Actuators {
     }
 
     /// Share of the oil asked for that the pump delivers.
-    fn flow_share(&self, open: &PerWheel<OpenArm>, actuation: &Actuation) -> f64 {
-        let arms_m3_s = open.map(|arm| self.flow.cylinder_m3_s(arm.speed_m_s)).sum();
-        let joints_m3_s: f64 = actuation
-            .steer_opening
-            .map(|opening| self.flow.joint_m3_s(opening * 0.17))
-            .iter()
-            .sum();
-        self.flow.share(arms_m3_s + joints_m3_s)
+    fn flow_share(&self, arms: &PerWheel<OpenArm>, joints_rad_s: [f64; 2]) -> f64 {
+        let arms_m3_s = arms.map(|arm| self.flow.cylinder_m3_s(arm.speed_m_s)).sum();
+        let [front_m3_s, rear_m3_s] = joints_rad_s.map(|rate| self.flow.joint_m3_s(rate));
+        self.flow.share(arms_m3_s + front_m3_s + rear_m3_s)
     }
 
+    /// Turns both joints at their share of the rates asked for.
     fn turn_joints(
         &mut self,
-        actuation: &Actuation,
-        motion: &Motion,
+        asked_rad_s: [f64; 2],
         flow_share: f64,
+        motion: &Motion,
         dt_s: f64,
     ) -> [HingeSpring; 2] {
         core::array::from_fn(|i| {
-            let input = SteeringInput {
-                opening: flow_share * actuation.steer_opening[i],
-                angle_rad: motion.joint[i].angle_rad,
-                rate_rad_s: motion.joint[i].rate_rad_s,
-            };
-            self.steering.step(&mut self.joints[i], &input, dt_s);
+            let rate_rad_s = flow_share * asked_rad_s[i];
+            self.steering.turn(&mut self.joints[i], motion.joint[i], rate_rad_s, dt_s);
             HingeSpring {
                 stiffness_nm: self.steering.stiffness_nm(),
                 damping_nms: self.steering.damping_nms(),

@@ -6,6 +6,7 @@
 
 use xt28_machine::Machine;
 
+use crate::bodies::HingeMotion;
 use crate::effects::{DelayLine, Lag, SteeringEffects};
 
 /// Parameters of one articulation joint.
@@ -62,21 +63,33 @@ impl Steering {
         SteeringState { commands, ..SteeringState::default() }
     }
 
-    /// Turns the rest angle over `dt_s` s. The relief valve lets the rest go no further from the
-    /// joint than the largest torque twists it.
-    pub fn step(&self, state: &mut SteeringState, input: &SteeringInput, dt_s: f64) {
+    /// First half of a step: moves the spool; gives the rate that it asks of the joint, rad/s.
+    pub fn open(&self, state: &mut SteeringState, opening: f64, dt_s: f64) -> f64 {
         let e = &self.effects;
-        let asked = input.opening.clamp(-1.0, 1.0);
+        let asked = opening.clamp(-1.0, 1.0);
         let arrived = state.commands.step(asked, e.delay.delay_s, dt_s);
         let spool = state.spool.step(arrived, e.lag.time_constant_s, dt_s);
-        let rate_rad_s = spool * self.rate_max_rad_s * e.rate.factor;
-        let reach = self.torque_max_nm / self.stiffness_nm + 0.5 * e.backlash.width_rad;
+        spool * self.rate_max_rad_s * e.rate.factor
+    }
+
+    /// Second half: turns the rest angle at `rate_rad_s` over `dt_s` s. The relief valve lets the
+    /// rest go no further from the joint than the largest torque twists it.
+    pub fn turn(&self, state: &mut SteeringState, joint: HingeMotion, rate_rad_s: f64, dt_s: f64) {
+        let play = &self.effects.backlash;
+        let reach = self.torque_max_nm / self.stiffness_nm + 0.5 * play.width_rad;
         // Where the joint will be: a limit around where it was would give way to its own motion.
-        let angle = input.angle_rad + input.rate_rad_s * dt_s;
+        let angle = joint.angle_rad + joint.rate_rad_s * dt_s;
         state.oil_rad = (state.oil_rad + rate_rad_s * dt_s)
             .clamp(-self.angle_max_rad, self.angle_max_rad)
             .clamp(angle - reach, angle + reach);
-        state.rest_rad = e.backlash.held_rad(state.rest_rad, state.oil_rad);
+        state.rest_rad = play.held_rad(state.rest_rad, state.oil_rad);
+    }
+
+    /// A whole step of a joint alone, which gets all the oil that it asks for.
+    pub fn step(&self, state: &mut SteeringState, input: &SteeringInput, dt_s: f64) {
+        let rate_rad_s = self.open(state, input.opening, dt_s);
+        let joint = HingeMotion { angle_rad: input.angle_rad, rate_rad_s: input.rate_rad_s };
+        self.turn(state, joint, rate_rad_s, dt_s);
     }
 
     /// Stiffness of the held joint, Nm/rad.

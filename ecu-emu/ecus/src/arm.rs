@@ -8,6 +8,8 @@ mod position_control;
 mod sensing;
 mod stroke_limit;
 
+use std::sync::Arc;
+
 use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{ArmTarget, ArmValve};
 use xt28_dbc::{Frame, Outbox};
@@ -20,17 +22,13 @@ use self::position_control::PositionControl;
 pub use self::position_control::PositionGains;
 use self::sensing::{ArmReadings, ArmSensing};
 use self::stroke_limit::StrokeLimit;
-use crate::input_check::{InputCheck, Supply, worst};
-use crate::life::{Commanded, Health, State};
+use crate::diagnostics::parts::arm as part;
+use crate::diagnostics::trouble_code::Fmi;
+use crate::diagnostics::{ARM, ArmData, ArmMonitor, ArmSeen, Diagnostics};
+use crate::input_check::Supply;
+use crate::life::{Commanded, Health, SELF_TEST, State};
+use crate::power::{Cause, Power, Running};
 use crate::{Port, Refusal, pins};
-
-/// Fault bits of the status frame.
-mod fault {
-    pub(super) const POSITION: u16 = 1 << 0;
-    pub(super) const PRESSURE: u16 = 1 << 1;
-    pub(super) const ATTITUDE: u16 = 1 << 2;
-    pub(super) const SUPPLY: u16 = 1 << 3;
-}
 
 /// What the arm ECU's input pins carry, mV.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,15 +76,22 @@ pub struct ArmEcu {
     automatic: Automatic,
     sensing: ArmSensing,
     attitude: AttitudeFilter,
-    stroke_checks: PerWheel<InputCheck>,
-    pressure_checks: [PerWheel<InputCheck>; 2],
     counter: AliveCounter,
+    monitor: ArmMonitor,
+    diagnostics: Diagnostics<ArmData>,
+    power: Power,
+    /// What it starts anew from.
+    machine: Arc<Machine>,
 }
 
 impl ArmEcu {
     /// An ECU just switched on.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
+        Self::boot(Arc::new(machine.clone()), Diagnostics::new(&ARM))
+    }
+
+    fn boot(machine: Arc<Machine>, diagnostics: Diagnostics<ArmData>) -> Self {
         Self {
             commands: ArmCommands::new(machine.arms.stroke_max_m),
             state: State::Init,
@@ -94,13 +99,32 @@ impl ArmEcu {
             gains: PerWheel::splat(PositionGains::new(&machine.hydraulics)),
             limit: StrokeLimit::up_to(machine.arms.stroke_max_m),
             control: PerWheel::splat(PositionControl::default()),
-            automatic: Automatic::new(machine),
-            sensing: ArmSensing::new(machine),
+            automatic: Automatic::new(&machine),
+            sensing: ArmSensing::new(&machine),
             attitude: AttitudeFilter::default(),
-            stroke_checks: PerWheel::splat(InputCheck::default()),
-            pressure_checks: [PerWheel::splat(InputCheck::default()); 2],
             counter: AliveCounter::default(),
+            monitor: ArmMonitor::new(&machine),
+            diagnostics,
+            power: Power::default(),
+            machine,
         }
+    }
+
+    /// Pulls the reset line for a moment: the ECU goes dark and starts anew.
+    pub fn reset(&mut self, now: SimTime) {
+        self.power.reset(now);
+    }
+
+    /// Starts anew: all is forgotten but the trouble codes and the gains.
+    fn restart(&mut self, cause: Cause) {
+        let mut diagnostics = self.diagnostics.clone().restart(&ARM);
+        match cause {
+            Cause::Supply => diagnostics.memory().occurred(part::SUPPLY, Fmi::FarBelow),
+            Cause::Reset => diagnostics.memory().occurred(part::CONTROLLER, Fmi::Erratic),
+        }
+        let gains = self.gains;
+        let fresh = Self::boot(Arc::clone(&self.machine), diagnostics);
+        *self = Self { gains, state: SELF_TEST, ..fresh };
     }
 
     /// Sets the gains of the manual modes, arm by arm, as a service tool would.
@@ -110,6 +134,9 @@ impl ArmEcu {
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
     pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        if !self.power.is_on() {
+            return;
+        }
         let taken = match (port, frame.id()) {
             (Port::Can1, ArmTarget::ID) => self.commands.on_target(now, frame),
             (Port::Can1, ArmValve::ID) => self.commands.on_valve(now, frame),
@@ -119,6 +146,7 @@ impl ArmEcu {
                 }
                 return;
             }
+            (Port::Can1, _) => return self.diagnostics.on_frame(now, frame),
             _ => return,
         };
         if let Err(refusal) = taken {
@@ -128,10 +156,15 @@ impl ArmEcu {
 
     /// One task period of 10 ms. `out` is cleared and filled.
     pub fn tick(&mut self, now: SimTime, pins: &ArmPins, out: &mut ArmOutputs) {
+        match self.power.step(now, pins.supply_mv) {
+            Running::On => {}
+            Running::Started(cause) => self.restart(cause),
+            Running::Off => return out.go_dark(),
+        }
         let readings = self.sensing.step(pins);
         self.attitude.step();
         let demand = self.commands.fresh(now);
-        let (health, faults) = self.diagnose(now, pins, demand.as_ref());
+        let (health, faults) = self.diagnose(now, pins, &readings, demand.as_ref());
         let commanded =
             demand.map(|d| Commanded { request: d.request(), frames: self.commands.frames() });
         let before = self.state;
@@ -162,6 +195,9 @@ impl ArmEcu {
             counter: self.counter.next_count(),
         };
         frames::status(&status, &mut out.can1);
+        self.monitor.commanded(currents.actual_ma.map(|[a, b]| pins::valve_opening(a, b)));
+        let data = self.data(pins, &readings, &currents);
+        self.diagnostics.tick(now, data, &mut out.can1);
     }
 
     /// Where the ECU is in its life.
@@ -211,28 +247,44 @@ impl ArmEcu {
         &mut self,
         now: SimTime,
         pins: &ArmPins,
+        readings: &ArmReadings,
         demand: Option<&ArmDemand>,
     ) -> (Health, u16) {
-        let position = worst(&mut self.stroke_checks.0, now, &pins.stroke_mv.0);
-        let [a, b] = &mut self.pressure_checks;
-        let pressures = [
-            worst(&mut a.0, now, &pins.pressure_a_mv.0),
-            worst(&mut b.0, now, &pins.pressure_b_mv.0),
-        ];
-        let lost = self.attitude.is_lost(now);
-        let faults = [
-            (position == Health::Broken, fault::POSITION),
-            (pressures.contains(&Health::Broken), fault::PRESSURE),
-            (lost, fault::ATTITUDE),
-            (Supply::read(pins.supply_mv).is_bad(), fault::SUPPLY),
-        ];
-        let bits = faults.into_iter().filter(|(is, _)| *is).fold(0, |all, (_, bit)| all | bit);
-        let [a, b] = pressures;
-        let needed = match demand {
-            Some(ArmDemand::Automatic(_)) if lost => Health::Broken,
-            Some(ArmDemand::Automatic(_)) => position.max(a).max(b),
-            _ => position,
+        let seen = ArmSeen {
+            stroke_mm: &readings.stroke_mm,
+            attitude_lost: self.attitude.is_lost(now),
+            commands_lost: demand.is_none() && self.refusal == Refusal::Deadline,
         };
-        (needed, bits)
+        let found = self.monitor.step(now, pins, seen, self.diagnostics.memory());
+        let needed = match demand {
+            Some(ArmDemand::Automatic(_)) if seen.attitude_lost => Health::Broken,
+            Some(ArmDemand::Automatic(_)) => found.position.max(found.pressure),
+            _ => found.position,
+        };
+        (needed, found.faults)
+    }
+
+    /// What a service tool may ask for until the next task period.
+    fn data(&self, pins: &ArmPins, readings: &ArmReadings, currents: &Currents) -> ArmData {
+        ArmData {
+            state: self.state,
+            pins: Some(*pins),
+            stroke_mm: readings.stroke_mm,
+            pressure_a_kpa: readings.pressure_a_kpa,
+            pressure_b_kpa: readings.pressure_b_kpa,
+            load_dan: readings.load_dan,
+            attitude_deg: self.attitude.angles_deg(),
+            current_ma: currents.actual_ma,
+        }
+    }
+}
+
+impl ArmOutputs {
+    /// As an ECU without a supply leaves it: no current, no frame.
+    fn go_dark(&mut self) {
+        self.solenoid_a_ma = PerWheel::splat(0.0);
+        self.solenoid_b_ma = PerWheel::splat(0.0);
+        self.can1.clear();
+        self.can2.clear();
     }
 }

@@ -7,6 +7,8 @@ mod sensing;
 mod sequence;
 mod steering;
 
+use std::sync::Arc;
+
 use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::DriveTarget;
 use xt28_dbc::{Frame, Outbox};
@@ -19,18 +21,12 @@ use self::sequence::{ThrottleLag, displacements};
 use self::steering::Steering;
 pub use self::steering::SteeringGains;
 use crate::command_stream::CommandStream;
-use crate::input_check::{InputCheck, Supply, worst};
-use crate::life::{Commanded, Health, Request, State};
+use crate::diagnostics::parts::drive as part;
+use crate::diagnostics::trouble_code::Fmi;
+use crate::diagnostics::{DRIVE, Diagnostics, DriveData, DriveMonitor, DriveSeen};
+use crate::life::{Commanded, Health, Request, SELF_TEST, State};
+use crate::power::{Cause, Power, Running};
 use crate::{Port, Refusal, pins};
-
-/// Fault bits of the status frame.
-mod fault {
-    pub(super) const JOINT: u16 = 1 << 0;
-    pub(super) const WHEEL_SPEED: u16 = 1 << 1;
-    pub(super) const PUMP_PRESSURE: u16 = 1 << 2;
-    pub(super) const SUPPLY: u16 = 1 << 3;
-    pub(super) const ENGINE: u16 = 1 << 4;
-}
 
 /// What the drive ECU's input pins carry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,16 +95,23 @@ pub struct DriveEcu {
     brake: ParkingBrake,
     engine: EngineLink,
     wheel_radius_m: f64,
-    joint_checks: [InputCheck; 2],
-    pump_checks: [InputCheck; 4],
     status_counter: AliveCounter,
     wheel_counter: AliveCounter,
+    monitor: DriveMonitor,
+    diagnostics: Diagnostics<DriveData>,
+    power: Power,
+    /// What it starts anew from.
+    machine: Arc<Machine>,
 }
 
 impl DriveEcu {
     /// An ECU just switched on.
     #[must_use]
     pub fn new(machine: &Machine) -> Self {
+        Self::boot(Arc::new(machine.clone()), Diagnostics::new(&DRIVE))
+    }
+
+    fn boot(machine: Arc<Machine>, diagnostics: Diagnostics<DriveData>) -> Self {
         Self {
             commands: CommandStream::default(),
             state: State::Init,
@@ -118,11 +121,31 @@ impl DriveEcu {
             brake: ParkingBrake::default(),
             engine: EngineLink::new(machine.drive.engine_speed_rpm),
             wheel_radius_m: machine.wheels.radius_m,
-            joint_checks: [InputCheck::default(); 2],
-            pump_checks: [InputCheck::default(); 4],
             status_counter: AliveCounter::default(),
             wheel_counter: AliveCounter::default(),
+            monitor: DriveMonitor::new(),
+            diagnostics,
+            power: Power::default(),
+            machine,
         }
+    }
+
+    /// Pulls the reset line for a moment: the ECU goes dark and starts anew.
+    pub fn reset(&mut self, now: SimTime) {
+        self.power.reset(now);
+    }
+
+    /// Starts anew: all is forgotten but the trouble codes and the gains.
+    fn restart(&mut self, cause: Cause) {
+        let mut diagnostics = self.diagnostics.clone().restart(&DRIVE);
+        match cause {
+            Cause::Supply => diagnostics.memory().occurred(part::SUPPLY, Fmi::FarBelow),
+            Cause::Reset => diagnostics.memory().occurred(part::CONTROLLER, Fmi::Erratic),
+        }
+        let gains = self.steering.gains();
+        let fresh = Self::boot(Arc::clone(&self.machine), diagnostics);
+        *self = Self { state: SELF_TEST, ..fresh };
+        self.steering.set_gains(gains);
     }
 
     /// Sets the gains of the steering, as a service tool would.
@@ -132,12 +155,16 @@ impl DriveEcu {
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
     pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        if !self.power.is_on() {
+            return;
+        }
         match (port, frame.id()) {
             (Port::Can1, DriveTarget::ID) => {
                 if let Err(refusal) = self.on_target(now, frame) {
                     self.refusal = refusal;
                 }
             }
+            (Port::Can1, _) => self.diagnostics.on_frame(now, frame),
             (Port::Can3, _) => self.engine.on_frame(now, frame),
             _ => {}
         }
@@ -145,9 +172,14 @@ impl DriveEcu {
 
     /// One task period of 10 ms. `out` is cleared and filled.
     pub fn tick(&mut self, now: SimTime, pins: &DrivePins, out: &mut DriveOutputs) {
+        match self.power.step(now, pins.supply_mv) {
+            Running::On => {}
+            Running::Started(cause) => self.restart(cause),
+            Running::Off => return out.go_dark(),
+        }
         let readings = sensing::read(pins, self.wheel_radius_m);
-        let (health, faults) = self.diagnose(now, pins);
         let demand = self.commands.fresh(now);
+        let (health, faults) = self.diagnose(now, pins, demand.is_none());
         let commanded = demand.map(|d| Commanded {
             request: if d.enable { Request::Move } else { Request::Rest },
             frames: self.commands.frames(),
@@ -181,6 +213,8 @@ impl DriveEcu {
             counter: self.status_counter.next_count(),
         };
         frames::status(&status, &mut can1);
+        let data = self.data(pins, &readings, out);
+        self.diagnostics.tick(now, data, &mut can1);
         out.can1 = can1;
     }
 
@@ -239,18 +273,36 @@ impl DriveEcu {
     }
 
     /// Only the joint sensors can stop the machine: they close the steering loop.
-    fn diagnose(&mut self, now: SimTime, pins: &DrivePins) -> (Health, u16) {
-        let joints = worst(&mut self.joint_checks, now, &[pins.joint_front_mv, pins.joint_rear_mv]);
-        let pumps = worst(&mut self.pump_checks, now, &pins.pump_mv);
-        let wheels_bad = pins.wheel_hz.0.iter().any(|hz| !(hz.is_finite() && *hz >= 0.0));
-        let faults = [
-            (joints == Health::Broken, fault::JOINT),
-            (wheels_bad, fault::WHEEL_SPEED),
-            (pumps == Health::Broken, fault::PUMP_PRESSURE),
-            (Supply::read(pins.supply_mv).is_bad(), fault::SUPPLY),
-            (self.engine.is_lost(now), fault::ENGINE),
-        ];
-        let bits = faults.into_iter().filter(|(is, _)| *is).fold(0, |all, (_, bit)| all | bit);
-        (joints, bits)
+    fn diagnose(&mut self, now: SimTime, pins: &DrivePins, silence: bool) -> (Health, u16) {
+        let seen = DriveSeen {
+            engine_lost: self.engine.is_lost(now),
+            commands_lost: silence && self.refusal == Refusal::Deadline,
+        };
+        self.monitor.step(now, pins, seen, self.diagnostics.memory())
+    }
+
+    /// What a service tool may ask for until the next task period.
+    fn data(&self, pins: &DrivePins, readings: &DriveReadings, out: &DriveOutputs) -> DriveData {
+        DriveData {
+            state: self.state,
+            pins: Some(*pins),
+            joint_deg: readings.joint_deg,
+            wheel_rpm: readings.wheel_rad_s.map(|rad_s| rad_s * 60.0 / core::f64::consts::TAU),
+            pump_bar: readings.pump_pa.map(|pa| pa * 1e-5),
+            engine_rpm: self.engine.speed_rpm(),
+            pump_ma: out.pump_ma,
+            motor_ma: out.motor_ma,
+        }
+    }
+}
+
+impl DriveOutputs {
+    /// As an ECU without a supply leaves it: no current, no frame, the brake's spring closed.
+    fn go_dark(&mut self) {
+        let [can1, can3, can4] = [&mut self.can1, &mut self.can3, &mut self.can4].map(|outbox| {
+            outbox.clear();
+            core::mem::take(outbox)
+        });
+        *self = Self { can1, can3, can4, ..Self::default() };
     }
 }

@@ -8,12 +8,14 @@
 
 mod arm;
 mod command_stream;
+pub mod diagnostics;
 mod drive;
 pub mod firmware_2016;
 mod input_check;
 mod life;
 pub mod pins;
 mod port;
+pub mod power;
 mod profile;
 mod refusal;
 mod send;

@@ -21,12 +21,18 @@ pub(crate) const COMMAND_DEADLINE: Duration = PERIOD.saturating_mul(3);
 /// Good frames in a row that end a safe stop, with a request for rest in the last of them.
 pub(crate) const REARM_FRAMES: u32 = 3;
 
+/// So long an ECU that has restarted looks at its inputs before it takes part: 100 ms (assumed).
+pub(crate) const SELF_TEST: State = State::Restarted(10);
+
 /// Where an ECU is in its life.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum State {
     /// Its inputs have not all been seen in range yet.
     #[default]
     Init,
+    /// Started again while the machine may have been moving; says init for so many task periods
+    /// more, and then does nothing before its sender has asked for rest.
+    Restarted(u8),
     /// Ready; commanded to rest, or not at all.
     Standby,
     /// Carries out a command.
@@ -73,6 +79,8 @@ impl State {
         match (self, health) {
             (_, Health::Broken) => Self::Fault,
             (Self::Init, Health::Doubtful) => Self::Init,
+            (Self::Restarted(left), Health::Doubtful) => Self::Restarted(left),
+            (Self::Restarted(left @ 1..), Health::Good) => Self::Restarted(left - 1),
             (Self::Fault, _) => Self::SafeStop,
             (Self::Init | Self::Standby | Self::Active, _) => match request {
                 Some(Request::Move) => Self::Active,
@@ -80,7 +88,7 @@ impl State {
                 None if self == Self::Active => Self::SafeStop,
                 None => Self::Standby,
             },
-            (Self::SafeStop, _) => match commanded {
+            (Self::Restarted(_) | Self::SafeStop, _) => match commanded {
                 Some(Commanded { request: Request::Rest, frames }) if frames >= REARM_FRAMES => {
                     Self::Standby
                 }
@@ -94,9 +102,22 @@ impl State {
         let moves = commanded.is_some_and(|c| c.request == Request::Move);
         match self {
             Self::SafeStop if before == Self::Active => Some(Refusal::Deadline),
-            Self::SafeStop if moves => Some(Refusal::Rearm),
+            Self::SafeStop | Self::Restarted(_) if moves => Some(Refusal::Rearm),
             Self::Fault | Self::Init if moves => Some(Refusal::SensorFault),
             _ => None,
+        }
+    }
+}
+
+impl State {
+    /// Its number on the wire.
+    pub(crate) const fn number(self) -> u8 {
+        match self {
+            Self::Init | Self::Restarted(_) => 0,
+            Self::Standby => 1,
+            Self::Active => 2,
+            Self::SafeStop => 3,
+            Self::Fault => 4,
         }
     }
 }
@@ -106,7 +127,7 @@ macro_rules! on_the_wire {
         $(impl From<State> for $wire {
             fn from(state: State) -> Self {
                 match state {
-                    State::Init => Self::Init,
+                    State::Init | State::Restarted(_) => Self::Init,
                     State::Standby => Self::Standby,
                     State::Active => Self::Active,
                     State::SafeStop => Self::SafeStop,
@@ -152,9 +173,25 @@ mod tests {
         assert_eq!(State::Fault.next(Health::Good, MOVE), State::SafeStop);
     }
 
+    #[test]
+    fn a_restart_tests_itself_then_waits_for_rest() {
+        let mut state = SELF_TEST;
+        for _ in 0..10 {
+            state = state.next(Health::Good, MOVE);
+            assert!(matches!(state, State::Restarted(_)));
+            assert_eq!(ArmStatusState::from(state), ArmStatusState::Init);
+            assert_eq!(state.refusal(state, MOVE), Some(Refusal::Rearm));
+        }
+        assert_eq!(state.next(Health::Doubtful, REST), state);
+        assert_eq!(state.next(Health::Good, MOVE), State::SafeStop);
+        assert_eq!(state.next(Health::Good, None), State::SafeStop);
+        assert_eq!(state.next(Health::Good, REST), State::Standby);
+    }
+
     fn any_state() -> impl Strategy<Value = State> {
-        use State::{Active, Fault, Init, SafeStop, Standby};
-        prop::sample::select(vec![Init, Standby, Active, SafeStop, Fault])
+        use State::{Active, Fault, Init, Restarted, SafeStop, Standby};
+        let all = vec![Init, Restarted(1), Restarted(0), Standby, Active, SafeStop, Fault];
+        prop::sample::select(all)
     }
 
     proptest! {
@@ -168,7 +205,7 @@ mod tests {
             if next == State::Active {
                 prop_assert_eq!(commanded, MOVE);
                 prop_assert_ne!(health, Health::Broken);
-                prop_assert!(!matches!(state, State::SafeStop | State::Fault));
+                prop_assert!(matches!(state, State::Init | State::Standby | State::Active));
             }
         }
     }

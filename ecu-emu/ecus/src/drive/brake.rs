@@ -28,7 +28,11 @@ impl ParkingBrake {
         commanded: Option<bool>,
         speed_m_s: f64,
     ) -> bool {
-        if !matches!(state, State::SafeStop | State::Fault) {
+        if matches!(state, State::Restarted(_)) {
+            // Its spring closed the brake while the ECU was dark; nobody has asked to open it.
+            self.applied = true;
+        }
+        if !matches!(state, State::SafeStop | State::Fault | State::Restarted(_)) {
             self.stopping_since = None;
             self.applied = commanded.unwrap_or(self.applied);
             return self.applied;
@@ -57,6 +61,15 @@ mod tests {
         assert!(brake.step(at(30), State::SafeStop, Some(false), 0.1), "it stays on");
         assert!(brake.step(at(40), State::Standby, None, 0.0));
         assert!(!brake.step(at(50), State::Standby, Some(false), 0.0));
+    }
+
+    #[test]
+    fn a_brake_that_a_restart_closed_stays_closed_until_commanded() {
+        let mut brake = ParkingBrake::default();
+        assert!(brake.step(at(0), State::Restarted(3), Some(false), 1.0));
+        assert!(brake.step(at(10), State::SafeStop, Some(false), 1.0));
+        assert!(brake.step(at(20), State::Standby, None, 0.0));
+        assert!(!brake.step(at(30), State::Active, Some(false), 0.0));
     }
 
     #[test]

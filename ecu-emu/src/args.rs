@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use ecu_emu::Profile;
 
 /// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
 ///
@@ -30,6 +31,14 @@ pub(crate) struct Args {
     /// Effects that the machine has beyond the nominal one (TOML; `xt28 effects` lists them)
     #[arg(long, value_name = "FILE")]
     pub(crate) effects: Option<PathBuf>,
+
+    /// Whose control runs: `paper`, or the firmware of `2016`, which an operator drives
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub(crate) profile: Profile,
+
+    /// What the operator does in the cab (TOML); profile 2016 only
+    #[arg(long, value_name = "FILE")]
+    pub(crate) operator: Option<PathBuf>,
 
     /// Seed of the sensor noise; exact sensors without it
     #[arg(long, value_name = "N")]

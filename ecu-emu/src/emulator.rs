@@ -2,18 +2,20 @@
 
 use core::time::Duration;
 
-use xt28_dbc::messages::Eec1;
+use xt28_dbc::messages::{Eec1, LeftPadButtons};
 use xt28_dbc::{Frame, Outbox};
-use xt28_ecus::{ArmEcu, ArmOutputs, DriveEcu, DriveOutputs, Port};
+use xt28_ecus::Profile;
+use xt28_ecus::firmware_2016::Quirks;
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Terrain, Vehicle, VehicleState};
 use xt28_ubx::Geodetic;
 
-use crate::ecu_effects;
-use crate::engine::{self, Engine};
+use crate::ecus::{Ecus, Outputs, Pins};
+use crate::engine::{Engine, EngineSpeaker};
 use crate::inbox::Inbox;
 use crate::receiver::Receiver;
-use crate::wiring;
+use crate::wires::{Wire, Wires};
+use crate::{Cab, Operator, wiring};
 
 /// One task period of both ECUs.
 pub const TICK: Duration = Duration::from_millis(10);
@@ -38,10 +40,16 @@ pub struct EmulatorConfig {
     pub seed: Option<u64>,
     /// Where the receiver believes the start to be.
     pub origin: Geodetic,
+    /// Whose control runs in the ECUs.
+    pub profile: Profile,
+    /// Oddities of the firmware of 2016; that profile only.
+    pub quirks: Quirks,
+    /// Who sits in the cab; that profile only.
+    pub operator: Operator,
 }
 
 impl EmulatorConfig {
-    /// The nominal machine on `terrain`, arms at 0.17 m, noise from `seed`.
+    /// The nominal machine on `terrain`, arms at 0.17 m, noise from `seed`; the paper's profile.
     #[must_use]
     pub fn new(machine: Machine, terrain: Terrain, seed: Option<u64>) -> Self {
         Self {
@@ -52,19 +60,24 @@ impl EmulatorConfig {
             load_n: None,
             seed,
             origin: Geodetic::BENCH_ORIGIN,
+            profile: Profile::Paper,
+            quirks: Quirks::firmware(),
+            operator: Operator::idle(),
         }
     }
 }
 
 /// The emulated machine, seen from its CAN bus and its receiver's serial port.
 pub struct Emulator {
-    arm_ecu: ArmEcu,
-    drive_ecu: DriveEcu,
-    arm_out: ArmOutputs,
-    drive_out: DriveOutputs,
+    profile: Profile,
+    ecus: Ecus,
+    out: Outputs,
+    wires: Wires,
     inbox: Inbox,
+    operator: Operator,
+    pads_due: SimTime,
     engine: Engine,
-    eec1_due: SimTime,
+    engine_speaker: EngineSpeaker,
     sensors: Sensors,
     imu: Imu,
     gnss: GnssReceiver,
@@ -86,13 +99,15 @@ impl Emulator {
             plant.step(&setting);
         }
         Self {
-            arm_ecu: ecu_effects::arm_ecu(machine, effects),
-            drive_ecu: ecu_effects::drive_ecu(machine, effects),
-            arm_out: ArmOutputs::default(),
-            drive_out: DriveOutputs::default(),
+            profile: config.profile,
+            ecus: Ecus::new(config),
+            out: Outputs::default(),
+            wires: Wires::default(),
             inbox: Inbox::new(effects.bus, config.seed),
+            operator: config.operator.clone(),
+            pads_due: SimTime::ZERO,
             engine,
-            eec1_due: SimTime::ZERO,
+            engine_speaker: EngineSpeaker::new(machine.drive.engine_torque_max_nm),
             sensors: Sensors::new(effects),
             imu: Imu::new(effects),
             gnss: GnssReceiver::new(machine, effects, config.seed),
@@ -105,51 +120,81 @@ impl Emulator {
     /// A frame from the bus that both ECUs sit on (`CAN_1`).
     pub fn on_frame(&mut self, now: SimTime, frame: &Frame) {
         if self.inbox.is_direct() {
-            self.hear(now, frame);
+            self.ecus.on_bus(now, frame);
         } else {
             self.inbox.put(now, frame);
         }
-    }
-
-    fn hear(&mut self, now: SimTime, frame: &Frame) {
-        self.arm_ecu.on_frame(now, Port::Can1, frame);
-        self.drive_ecu.on_frame(now, Port::Can1, frame);
     }
 
     /// One tick at `now`: sensors are read, both ECUs run, the plant moves on to the next tick.
     /// Frames for the bus are added to `out`.
     pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
         while let Some((at, frame)) = self.inbox.take_due(now) {
-            self.hear(at, &frame);
+            self.ecus.on_bus(at, &frame);
         }
         let state = *self.plant.state();
         let readings = self.sensors.read(&state);
-        for frame in wiring::imu_frames(&self.imu.step(&state)) {
-            self.arm_ecu.on_frame(now, Port::Can2, &frame);
-        }
-        let eec1 = engine::eec1(state.engine_speed_rpm);
-        self.drive_ecu.on_frame(now, Port::Can3, &eec1);
-
-        self.arm_ecu.tick(now, &wiring::arm_pins(&readings), &mut self.arm_out);
-        self.drive_ecu.tick(now, &wiring::drive_pins(&readings), &mut self.drive_out);
-        for frame in self.drive_out.can3.frames() {
-            self.engine.on_frame(frame);
-        }
-        let sent = [&self.arm_out.can1, &self.drive_out.can1];
-        sent.iter().flat_map(|outbox| outbox.frames()).for_each(|frame| out.push(*frame));
-        if now >= self.eec1_due {
-            self.eec1_due = now + Eec1::PERIOD;
-            out.push(eec1);
-        }
+        let cab = self.operator.cab(now);
+        self.hear_wires(now, &state, &cab);
+        let pins = Pins {
+            arm: wiring::arm_pins(&readings),
+            drive: wiring::drive_pins(&readings),
+            cab: cab.pins(),
+        };
+        self.ecus.tick(now, &pins, &mut self.out);
+        self.out.spread(&mut self.wires);
+        self.send(out);
         if let Some(fix) = self.gnss.step(now, &state) {
             // A fix that no message can say (a machine on the pole) is a fix that is not there.
             let _ = self.receiver.encode(&fix, &mut self.gnss_bytes);
         }
         self.engine.step(TICK.as_secs_f64());
-        let actuation = wiring::actuation(&self.arm_out, &self.drive_out, self.engine.speed_rpm());
+        let Outputs { arm, drive } = &self.out;
+        let actuation = wiring::actuation(arm, drive, self.engine.speed_rpm());
         for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
             self.plant.step(&actuation);
         }
+    }
+
+    /// What the wires of their own bring the ECUs, and on the display's what was sent in the last
+    /// tick.
+    fn hear_wires(&mut self, now: SimTime, state: &VehicleState, cab: &Cab) {
+        for frame in self.wires.frames(Wire::Display) {
+            self.ecus.on_wire(now, Wire::Display, frame);
+        }
+        self.wires.clear();
+        self.wires.extend(Wire::Inertial, &wiring::imu_frames(&self.imu.step(state)));
+        for frame in self.engine_speaker.frames(now, state).into_iter().flatten() {
+            self.wires.extend(Wire::Engine, &[frame]);
+        }
+        if self.profile == Profile::Firmware2016 && now >= self.pads_due && !cab.pads_silent {
+            self.pads_due = now + LeftPadButtons::PERIOD;
+            self.wires.extend(Wire::LeftArmrest, &cab.left_frames());
+            self.wires.extend(Wire::RightArmrest, &cab.right_frames());
+        }
+        for wire in [Wire::Inertial, Wire::LeftArmrest, Wire::RightArmrest, Wire::Engine] {
+            for frame in self.wires.frames(wire) {
+                self.ecus.on_wire(now, wire, frame);
+            }
+        }
+    }
+
+    /// The bus gets what both ECUs send there, the engine what is for it.
+    fn send(&mut self, out: &mut Outbox) {
+        self.out.bus().for_each(|frame| out.push(*frame));
+        for frame in self.wires.frames(Wire::Engine) {
+            self.engine.on_frame(frame);
+            // The bench's bus shows the engine's speed, as the logs of the paper's machine do.
+            if self.profile == Profile::Paper && frame.id() == Eec1::ID {
+                out.push(*frame);
+            }
+        }
+    }
+
+    /// What was on another of the machine's wires in the last tick, in the order it was sent.
+    #[must_use]
+    pub fn on_wire(&self, wire: Wire) -> &[Frame] {
+        self.wires.frames(wire)
     }
 
     /// The receiver's bytes since the last call, appended to `bytes`.

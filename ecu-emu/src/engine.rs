@@ -1,12 +1,23 @@
-//! The diesel engine's own controller: follows the requested speed, says EEC1.
+//! The diesel engine's own controller: follows the requested speed, says what J1939 has it say.
 
 use xt28_dbc::Frame;
-use xt28_dbc::messages::Eec1;
+use xt28_dbc::messages::{Eec1, Eec2, Et1};
+use xt28_machine::SimTime;
+use xt28_sim::VehicleState;
 
 /// Lowest and highest speed the engine takes a request for, rpm (facts 4.9).
 const SPEED_RANGE_RPM: [f64; 2] = [800.0, 1800.0];
 /// Time constant of the governor, s (assumed).
 const TIME_CONSTANT_S: f64 = 0.3;
+/// Share of its torque that an idling engine takes for itself and its small pumps (assumed).
+const LOAD_IDLE: f64 = 0.10;
+/// Share of the engine's power that reaches the wheels (assumed).
+const EFFICIENCY: f64 = 0.7;
+/// Coolant of a warm engine, degC (assumed).
+const COOLANT_DEG_C: f64 = 85.0;
+/// A slower engine is not loaded but stalling, rad/s (assumed).
+const SPEED_MIN_RAD_S: f64 = 10.0;
+const RAD_S_PER_RPM: f64 = core::f64::consts::TAU / 60.0;
 
 /// The engine.
 #[derive(Clone, Debug)]
@@ -48,8 +59,53 @@ impl Engine {
     }
 }
 
+/// What the engine says on its bus, each frame at its own period.
+#[derive(Clone, Debug)]
+pub(crate) struct EngineSpeaker {
+    torque_max_nm: f64,
+    due: [SimTime; 3],
+}
+
+impl EngineSpeaker {
+    /// That of an engine with `torque_max_nm`.
+    pub(crate) const fn new(torque_max_nm: f64) -> Self {
+        Self { torque_max_nm, due: [SimTime::ZERO; 3] }
+    }
+
+    /// The frames due at `now`: speed, load, coolant.
+    pub(crate) fn frames(&mut self, now: SimTime, state: &VehicleState) -> [Option<Frame>; 3] {
+        let said = [
+            (Eec1::PERIOD, eec1(state.engine_speed_rpm)),
+            (Eec2::PERIOD, self.eec2(state)),
+            (Et1::PERIOD, et1()),
+        ];
+        let mut frames = [None; 3];
+        for ((frame, due), (period, said)) in frames.iter_mut().zip(&mut self.due).zip(said) {
+            if now >= *due {
+                *due = now + period;
+                *frame = Some(said);
+            }
+        }
+        frames
+    }
+
+    /// Torque that the wheels take of the engine, as a share of its greatest.
+    fn eec2(&self, state: &VehicleState) -> Frame {
+        let wheels = state.wheel_torque_nm.0.iter().zip(&state.wheel_speed_rad_s.0);
+        let power_w: f64 = wheels.map(|(torque, speed)| torque * speed).sum();
+        let engine_rad_s = (state.engine_speed_rpm * RAD_S_PER_RPM).max(SPEED_MIN_RAD_S);
+        let torque_nm = power_w.max(0.0) / EFFICIENCY / engine_rad_s;
+        let load_percent = (100.0 * (LOAD_IDLE + torque_nm / self.torque_max_nm)).clamp(0.0, 125.0);
+        Eec2 { load_percent }.encode().expect("a clamped load is in the frame's range")
+    }
+}
+
+fn et1() -> Frame {
+    Et1 { coolant_deg_c: COOLANT_DEG_C }.encode().expect("a temperature in the frame's range")
+}
+
 /// The engine's frame at a speed; a speed that the frame cannot say is said as its nearest.
-pub(crate) fn eec1(speed_rpm: f64) -> Frame {
+fn eec1(speed_rpm: f64) -> Frame {
     let engine_speed_rpm = speed_rpm.clamp(0.0, SPEED_RANGE_RPM[1]);
     Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range")
 }

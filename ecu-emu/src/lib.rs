@@ -4,13 +4,22 @@
 //! metres and newtons; `wiring` is the harness between them.
 #![forbid(unsafe_code)]
 
+mod cab;
 mod ecu_effects;
+mod ecus;
 mod emulator;
 mod engine;
 mod inbox;
+mod operator;
 mod receiver;
 mod truth;
+mod wires;
 mod wiring;
 
+pub use cab::Cab;
 pub use emulator::{Emulator, EmulatorConfig, TICK};
+pub use operator::{Operator, OperatorError};
 pub use truth::{TRUTH_HEADER, write_truth_row};
+pub use wires::Wire;
+pub use xt28_ecus::Profile;
+pub use xt28_ecus::firmware_2016::Quirks;

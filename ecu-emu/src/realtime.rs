@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use ecu_emu::{Emulator, EmulatorConfig, TICK, TRUTH_HEADER, write_truth_row};
+use ecu_emu::{Emulator, EmulatorConfig, Operator, Profile, TICK, TRUTH_HEADER, write_truth_row};
 use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
@@ -79,6 +79,15 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
     if let Some(path) = &args.effects {
         config.effects = Overlay::load(path)?.effects();
+    }
+    config.profile = args.profile;
+    if let Some(path) = &args.operator {
+        if args.profile == Profile::Paper {
+            return Err("--operator: nobody sits in the cab of the paper's profile; \
+                        give --profile 2016 too"
+                .into());
+        }
+        config.operator = Operator::load(path)?;
     }
     Ok(config)
 }

@@ -77,7 +77,7 @@ mod tests {
     fn it_stays_within_fifty_and_starts_from_none() {
         let mut regulator = PumpRegulator::default();
         let firmware = Quirks::firmware();
-        let mut step =
+        let step =
             |r: &mut PumpRegulator| r.step(500.0, [60_000, 0, 0, 0], DriveState::Forward, firmware);
         assert_eq!(step(&mut regulator), 500.0, "off");
         regulator.toggle();

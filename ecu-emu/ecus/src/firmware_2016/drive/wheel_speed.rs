@@ -20,8 +20,8 @@ const RAD_S_PER_COUNT: f64 = 0.1 * core::f64::consts::TAU / 60.0;
 pub(super) fn counts(pins: &DrivePins, quirks: Quirks) -> PerWheel<i32> {
     let per_hz = if quirks.frequency_in_tenths_of_hz { 10.0 } else { 1.0 };
     let count = |w: Wheel| {
-        // `max` first: it turns NaN into zero.
-        let input = cut(pins.wheel_hz[w].max(0.0).min(INPUT_MAX_HZ) * per_hz);
+        // What is not a number is cut to zero.
+        let input = cut(pins.wheel_hz[w].clamp(0.0, INPUT_MAX_HZ) * per_hz);
         cut((f64::from(input) * COUNTS / PULSES).trunc() / GEAR)
     };
     PerWheel::from_fn(|w| match w {

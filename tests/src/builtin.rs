@@ -18,12 +18,21 @@ pub const BUILTIN: &[(&str, &str)] = texts!(
     "turn-right",
     "s-turn",
     "arm-steps",
+    "arm-step-response",
     "ramp",
+    "ramp-locked",
+    "ramp-automatic",
     "command-loss"
 );
 
 /// Name and text of the scripts that they play.
-const SCRIPTS: &[(&str, &str)] = texts!("s-turn.script", "arm-steps.script");
+const SCRIPTS: &[(&str, &str)] = texts!(
+    "s-turn.script",
+    "arm-steps.script",
+    "arm-step-response.script",
+    "ramp-locked.script",
+    "ramp-automatic.script",
+);
 
 /// The text of a built-in script.
 fn script(path: &Path) -> io::Result<String> {

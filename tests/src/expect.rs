@@ -3,10 +3,16 @@
 mod arm_speed;
 mod attitude;
 mod ecu_state;
+mod ground_pressure;
+mod level;
+mod peak_load;
 mod pose;
 mod rear_joint;
 mod standstill;
+mod step_response;
+mod unsupported;
 mod weight;
+mod wheel_load;
 
 use serde::Deserialize;
 use xt28_machine::Machine;
@@ -16,9 +22,14 @@ use crate::{Bound, Finding, Scenario, Trace, Truth};
 pub use arm_speed::ArmSpeed;
 pub use attitude::RollPeak;
 pub use ecu_state::{Ecu, ReachesState};
+pub use ground_pressure::EvenGroundPressure;
+pub use level::StaysLevel;
+pub use peak_load::PeakLoad;
 pub use pose::ReachesPose;
 pub use rear_joint::RearFollows;
 pub use standstill::StandsStill;
+pub use step_response::StepResponse;
+pub use unsupported::Unsupported;
 pub use weight::CarriesWeight;
 
 /// One physical expectation, as a scenario file states it.
@@ -39,6 +50,16 @@ pub enum Expectation {
     RollPeak(RollPeak),
     /// An ECU is in a state soon after commands stop.
     ReachesState(ReachesState),
+    /// Arms answer steps of their targets.
+    StepResponse(StepResponse),
+    /// Roll and pitch stay small.
+    StaysLevel(StaysLevel),
+    /// The wheels share the weight.
+    EvenGroundPressure(EvenGroundPressure),
+    /// Wheels in the air carry nothing.
+    Unsupported(Unsupported),
+    /// The greatest load of a cylinder lies between two bounds.
+    PeakLoad(PeakLoad),
 }
 
 /// A recorded run and what it ran: all that an expectation may look at.
@@ -66,6 +87,11 @@ impl Expectation {
             Self::RearFollows(e) => e.judge(evidence),
             Self::RollPeak(e) => e.judge(evidence),
             Self::ReachesState(e) => e.judge(evidence),
+            Self::StepResponse(e) => e.judge(evidence),
+            Self::StaysLevel(e) => e.judge(evidence),
+            Self::EvenGroundPressure(e) => e.judge(evidence),
+            Self::Unsupported(e) => e.judge(evidence),
+            Self::PeakLoad(e) => e.judge(evidence),
         }
     }
 }

@@ -43,7 +43,10 @@ scenarios! {
     turn_right: "turn-right",
     s_turn: "s-turn",
     arm_steps: "arm-steps",
+    arm_step_response: "arm-step-response",
     ramp: "ramp",
+    ramp_locked: "ramp-locked",
+    ramp_automatic: "ramp-automatic",
     command_loss: "command-loss",
 }
 

@@ -10,6 +10,7 @@ mod grid;
 mod layers;
 mod map;
 mod minima;
+mod raster;
 mod search;
 mod spec;
 mod terrain;

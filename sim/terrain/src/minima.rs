@@ -68,29 +68,36 @@ impl Terrain {
     #[must_use]
     pub fn nearest(&self, centre_m: [f64; 3], reach_m: f64) -> Minima {
         let mut found = Minima::NONE;
+        self.each_minimum(centre_m, reach_m, |nearest| found.insert(nearest));
+        found
+    }
+
+    /// Calls `keep` with every local minimum of the distance from `centre_m` to the ground that is no
+    /// further than `reach_m`, however near to one another. A minimum on the border of two triangles
+    /// may come twice.
+    pub fn each_minimum(&self, centre_m: [f64; 3], reach_m: f64, mut keep: impl FnMut(Nearest)) {
         let [x, y, z] = centre_m;
         match self {
             Self::Flat => {
                 if z <= reach_m {
-                    found.insert(Nearest { point_m: [x, y, 0.0], distance_m: z });
+                    keep(Nearest { point_m: [x, y, 0.0], distance_m: z });
                 }
             }
             Self::Plane(plane) => {
                 let nearest = plane.nearest(centre_m);
                 if nearest.distance_m <= reach_m {
-                    found.insert(nearest);
+                    keep(nearest);
                 }
             }
             Self::Grid(grid) => {
                 let ground_m = grid.height_m(x, y);
                 if z > ground_m {
-                    Search::new(grid, centre_m, reach_m, &mut found).run();
+                    Search::new(grid, centre_m, reach_m, keep).run();
                 } else {
                     let point_m = [x, y, ground_m];
-                    found.insert(Nearest { point_m, distance_m: z - ground_m });
+                    keep(Nearest { point_m, distance_m: z - ground_m });
                 }
             }
         }
-        found
     }
 }

@@ -6,18 +6,18 @@
 //! Blocks and cells of the grid that lie too deep for the ball are passed over by their top.
 
 use crate::grid::{BLOCK, SPACING_M};
-use crate::{Grid, Minima, Nearest};
+use crate::{Grid, Nearest};
 
 /// Slack of the conditions, m²: on the border between two features, both may hold, never neither.
 const SLACK_M2: f64 = 1e-12;
 
-/// One search around a centre above the ground.
-pub(crate) struct Search<'a> {
+/// One search around a centre above the ground; every minimum found goes to `keep`.
+pub(crate) struct Search<'a, K> {
     grid: &'a Grid,
     centre_m: [f64; 3],
     reach_m: f64,
     reach_m2: f64,
-    found: &'a mut Minima,
+    keep: K,
 }
 
 /// The heights to search in, and where they lie.
@@ -42,14 +42,9 @@ struct Cell {
     opposite: f64,
 }
 
-impl<'a> Search<'a> {
-    pub(crate) fn new(
-        grid: &'a Grid,
-        centre_m: [f64; 3],
-        reach_m: f64,
-        found: &'a mut Minima,
-    ) -> Self {
-        Self { grid, centre_m, reach_m, reach_m2: reach_m * reach_m, found }
+impl<'a, K: FnMut(Nearest)> Search<'a, K> {
+    pub(crate) fn new(grid: &'a Grid, centre_m: [f64; 3], reach_m: f64, keep: K) -> Self {
+        Self { grid, centre_m, reach_m, reach_m2: reach_m * reach_m, keep }
     }
 
     /// Searches all cells that the ball may touch.
@@ -200,7 +195,7 @@ impl<'a> Search<'a> {
         let distance_m2: f64 = foot.iter().map(|m| m * m).sum();
         if distance_m2 <= self.reach_m2 && foot[2] < 0.0 {
             let point_m = std::array::from_fn(|axis| self.centre_m[axis] + foot[axis]);
-            self.found.insert(Nearest { point_m, distance_m: distance_m2.sqrt() });
+            (self.keep)(Nearest { point_m, distance_m: distance_m2.sqrt() });
         }
     }
 }

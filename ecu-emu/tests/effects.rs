@@ -1,0 +1,196 @@
+//! Effects on the emulated machine, seen where a service tool would see them: on the bus.
+
+use std::path::Path;
+
+use ecu_emu::{Emulator, EmulatorConfig, TICK};
+use xt28_dbc::e2e::AliveCounter;
+use xt28_dbc::messages::{
+    ArmTarget, ArmTargetMode, Attitude, DriveCurrent, DriveTarget, Eec1, PosFront, RefCurrentFront,
+    RefCurrentRear, WheelSpeedSigned,
+};
+use xt28_dbc::{Frame, Outbox};
+use xt28_machine::{Machine, SimTime};
+use xt28_sim::effects::{CATALOGUE, Entry, Overlay, Scope};
+use xt28_sim::{Effects, Terrain};
+
+/// The frames of 14 s: arms go from 170 to 220 mm at 1 s, the machine drives from 3 s on and turns
+/// left from 6 s on.
+fn bus(effects: Effects) -> Vec<(SimTime, Frame)> {
+    let config =
+        EmulatorConfig { effects, ..EmulatorConfig::new(Machine::xt28(), Terrain::Flat, Some(5)) };
+    let mut emulator = Emulator::new(&config);
+    let (mut arm, mut drive) = (AliveCounter::default(), AliveCounter::default());
+    let (mut out, mut now, mut log) = (Outbox::with_capacity(64), SimTime::ZERO, Vec::new());
+    while now < SimTime::from_millis(14_000) {
+        let t = now.as_secs_f64();
+        let mm = if t < 1.0 { 170.0 } else { 220.0 };
+        let arms = ArmTarget {
+            fr_mm: mm,
+            fl_mm: mm,
+            mr_mm: mm,
+            ml_mm: mm,
+            br_mm: mm,
+            bl_mm: mm,
+            mode: ArmTargetMode::ManualPosition,
+            counter: arm.next_count(),
+        };
+        let target = DriveTarget {
+            throttle_percent: if t < 3.0 { 0.0 } else { 40.0 },
+            front_angle_deg: if t < 6.0 { 0.0 } else { 15.0 },
+            engine_speed_rpm: 1200.0,
+            brake: false,
+            enable: true,
+            counter: drive.next_count(),
+        };
+        for frame in [arms.encode().unwrap(), target.encode().unwrap()] {
+            emulator.on_frame(now, &frame);
+        }
+        emulator.tick(now, &mut out);
+        log.extend(out.frames().iter().map(|frame| (now, *frame)));
+        out.clear();
+        now += TICK;
+    }
+    log
+}
+
+fn with(effect: &str) -> Vec<(SimTime, Frame)> {
+    let overlay = Overlay::parse(&format!("[[effect]]\n{effect}"), Path::new("test")).unwrap();
+    bus(overlay.effects())
+}
+
+/// One signal over time, of the message that `decode` takes.
+fn series<M, E>(
+    log: &[(SimTime, Frame)],
+    decode: fn(&Frame) -> Result<M, E>,
+    signal: impl Fn(&M) -> f64,
+) -> Vec<(f64, f64)> {
+    let samples = log.iter().filter_map(|(at, frame)| {
+        decode(frame).ok().map(|message| (at.as_secs_f64(), signal(&message)))
+    });
+    samples.collect()
+}
+
+/// Largest value after `from_s`.
+fn most(series: &[(f64, f64)], from_s: f64) -> f64 {
+    series.iter().filter(|(t, _)| *t >= from_s).map(|(_, v)| *v).fold(f64::MIN, f64::max)
+}
+
+/// The time at which a series first reaches `value`, s.
+fn reaches(series: &[(f64, f64)], value: f64) -> f64 {
+    series.iter().find(|(_, v)| *v >= value).expect("it comes to that").0
+}
+
+#[test]
+fn every_effect_at_severity_zero_leaves_the_bus_as_it_was() {
+    let entries = CATALOGUE.iter().map(|effect| Entry {
+        effect,
+        scope: Scope::All,
+        severity: 0.0,
+        values: effect.parameters.iter().map(|p| (p, p.range[1])).collect(),
+    });
+    let overlay = Overlay { entries: entries.collect() };
+    assert!(bus(overlay.effects()) == bus(Effects::default()), "some frame differs");
+}
+
+#[test]
+fn an_arm_with_twice_the_gain_opens_twice_as_wide_and_the_others_do_not() {
+    let (nominal, gained) =
+        (bus(Effects::default()), with("name = \"arm-gain\"\nscope = \"front\"\nkp_factor = 1.4"));
+    let front = |log: &_| most(&series(log, RefCurrentFront::decode, |m| m.fr_b_ma), 1.0);
+    let rear = |log: &_| most(&series(log, RefCurrentRear::decode, |m| m.br_b_ma), 1.0);
+    // 400 mA opens, 400 mA more is full; the first error of 50 mm asks for 0.20.
+    let opening = |ma: f64| (ma - 400.0) / 400.0;
+    assert!((opening(front(&gained)) / opening(front(&nominal)) - 1.4).abs() < 0.05);
+    assert!((rear(&gained) - rear(&nominal)).abs() < 6.0, "{} {}", rear(&gained), rear(&nominal));
+}
+
+#[test]
+fn a_steering_gain_shows_in_the_steering_current() {
+    let (nominal, gained) =
+        (bus(Effects::default()), with("name = \"steer-gain\"\nkp_factor = 1.5"));
+    let current = |log: &_| most(&series(log, DriveCurrent::decode, |m| m.steer_front_a_ma), 6.0);
+    // 415 mA opens, 315 mA more is full; 15 degrees ask for 0.375.
+    let opening = |ma: f64| (ma - 415.0) / 315.0;
+    assert!((opening(current(&gained)) / opening(current(&nominal)) - 1.5).abs() < 0.05);
+    let arms = |log: &_| series(log, RefCurrentFront::decode, |m| m.fr_b_ma);
+    assert_eq!(arms(&gained)[..500], arms(&nominal)[..500]);
+}
+
+#[test]
+fn a_late_follower_turns_the_rear_joint_late() {
+    let (nominal, late) =
+        (bus(Effects::default()), with("name = \"rear-follower-lag\"\ntime_constant_s = 1.0"));
+    let rear = |log: &_| series(log, DriveCurrent::decode, |m| m.steer_rear_a_ma);
+    let delay_s = reaches(&rear(&late), 450.0) - reaches(&rear(&nominal), 450.0);
+    assert!((0.2..1.5).contains(&delay_s), "{delay_s}");
+}
+
+#[test]
+fn an_inertial_unit_off_level_shows_in_the_attitude() {
+    let tilted = with("name = \"imu-offset\"\nroll_rad = 0.03\npitch_rad = -0.02");
+    let nominal = bus(Effects::default());
+    let shift = |of: fn(&Attitude) -> f64| {
+        let mean = |log: &[_]| {
+            let s = series(log, Attitude::decode, of);
+            let (sum, n) = s
+                .iter()
+                .filter(|(t, _)| *t > 2.0)
+                .fold((0.0, 0.0), |(sum, n), (_, v)| (sum + v, n + 1.0));
+            sum / n
+        };
+        mean(&tilted) - mean(&nominal)
+    };
+    let (roll, pitch) = (shift(|m| m.roll_deg), shift(|m| m.pitch_deg));
+    assert!((roll - 0.03_f64.to_degrees()).abs() < 0.15, "{roll}");
+    assert!((pitch + 0.02_f64.to_degrees()).abs() < 0.15, "{pitch}");
+}
+
+#[test]
+fn a_stroke_sensor_off_by_a_centimetre_moves_the_arm_and_not_its_reading() {
+    let biased = with("name = \"stroke-bias\"\nscope = \"FR\"\nbias_m = 0.01");
+    let (fr, fl) = (
+        series(&biased, PosFront::decode, |m| m.fr_mm),
+        series(&biased, PosFront::decode, |m| m.fl_mm),
+    );
+    // Before the step both read what was asked: the controller sees the reading.
+    let at_rest = |s: &[(f64, f64)]| s.iter().find(|(t, _)| *t > 0.9).unwrap().1;
+    assert!((at_rest(&fr) - at_rest(&fl)).abs() <= 10.0);
+    assert!((most(&fr, 5.0) - 220.0).abs() < 8.0, "{}", most(&fr, 5.0));
+}
+
+#[test]
+fn droop_shows_in_the_engines_own_frame() {
+    let drooping = with("name = \"engine-droop\"\ndroop_per_w = 1e-5");
+    let least = |log: &_| -most(&series(log, Eec1::decode, |m| -m.engine_speed_rpm), 3.0);
+    let lost = least(&bus(Effects::default())) - least(&drooping);
+    assert!((10.0..400.0).contains(&lost), "{lost} rpm");
+}
+
+#[test]
+fn a_lagging_drive_reaches_its_speed_later() {
+    let speed = |log: &_| series(log, WheelSpeedSigned::decode, |m| m.fr_rpm);
+    let nominal = speed(&bus(Effects::default()));
+    let half = most(&nominal, 5.0) / 2.0;
+    let delayed = speed(&with("name = \"throttle-delay\"\ndelay_s = 0.4"));
+    let delay_s = reaches(&delayed, half) - reaches(&nominal, half);
+    assert!((delay_s - 0.4).abs() < 0.05, "{delay_s}");
+    let lagging = speed(&with("name = \"drive-lag\"\ntime_constant_s = 0.8"));
+    let delay_s = reaches(&lagging, half) - reaches(&nominal, half);
+    assert!((0.3..1.2).contains(&delay_s), "{delay_s}");
+}
+
+#[test]
+fn lost_frames_are_the_same_ones_every_time() {
+    let lossy = || with("name = \"frame-loss\"\nshare = 0.3");
+    assert!(lossy() == lossy(), "a seed is a run");
+}
+
+#[test]
+fn jitter_within_the_deadline_does_no_harm_and_beyond_it_stops_the_machine() {
+    let speed = |log: &_| series(log, WheelSpeedSigned::decode, |m| m.fr_rpm);
+    let nominal = speed(&bus(Effects::default()));
+    let little = speed(&with("name = \"command-jitter\"\nlatest_s = 0.01"));
+    assert!((reaches(&little, 3.0) - reaches(&nominal, 3.0)).abs() < 0.1);
+    let much = speed(&with("name = \"command-jitter\"\nlatest_s = 1.0"));
+    assert!(most(&much, 0.0) < 3.0, "silence of three periods is a safe stop");
+}

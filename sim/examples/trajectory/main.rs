@@ -14,9 +14,10 @@ use std::time::Duration;
 use manoeuvre::{Manoeuvre, Sample, yardstick};
 use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Bodies, Effects, RapierBodies, Terrain, Vehicle};
+use xt28_sim::{Bodies, Effects, Plant, RapierBodies, Terrain, Vehicle};
 
-const USAGE: &str = "usage: trajectory engines | grid TERRAIN | run ENGINE MANOEUVRE HZ [TERRAIN]";
+const USAGE: &str =
+    "usage: trajectory engines | grid TERRAIN | start TERRAIN | run ENGINE MANOEUVRE HZ [TERRAIN]";
 /// Our engines, by name.
 const ENGINES: [&str; 1] = ["rapier"];
 
@@ -26,6 +27,7 @@ fn main() -> Result<(), String> {
     match words[..] {
         ["engines"] => println!("{}", ENGINES.join("\n")),
         ["grid", name] => print!("{}", ascii_grid(&terrain(name)?)),
+        ["start", name] => println!("{}", start(&terrain(name)?)?),
         ["run", engine, manoeuvre, rate, ref ground @ ..] => {
             let manoeuvre = Manoeuvre::load(manoeuvre)?;
             let rate_hz = rate.parse().map_err(|error| format!("{rate}: {error}"))?;
@@ -46,6 +48,15 @@ fn terrain(name: &str) -> Result<Terrain, String> {
         return Ok(Terrain::Flat);
     }
     Terrain::load(&yardstick().join(format!("{name}.toml"))).map_err(|error| error.to_string())
+}
+
+/// Where the machine is set down: position in m, yaw, roll and pitch in rad.
+fn start(ground: &Terrain) -> Result<String, String> {
+    let strokes = PerWheel::splat(Manoeuvre::load("settle")?.start_stroke_m);
+    let vehicle = Vehicle::new(&Machine::xt28(), ground, strokes);
+    let s = vehicle.state();
+    let [x, y, z] = s.position_m;
+    Ok(format!("{x},{y},{z},{},{},{}", s.yaw_rad, s.roll_rad, s.pitch_rad))
 }
 
 /// Prints the trajectory and what a step took of the processor.

@@ -29,6 +29,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--machine", type=Path, required=True, help="the machine file")
     parser.add_argument("--manoeuvres", type=Path, required=True, help="the manoeuvres' file")
     parser.add_argument("--grid", type=Path, help="heights as an ESRI ASCII grid; level without")
+    parser.add_argument("--start", default="", help="x,y,z,yaw,roll,pitch to start from")
     parser.add_argument("--rate", type=int, default=120, help="steps per second")
     for name in ("integrator", "cone", "solver"):
         parser.add_argument(f"--{name}", default=getattr(Settings, name))
@@ -47,6 +48,8 @@ def main() -> None:
     )
     ground = terrain.read(args.grid) if args.grid else None
     vehicle = Vehicle(machine, settings, ground, manoeuvre.start_stroke_m)
+    if args.start:
+        vehicle.place(*map(float, args.start.split(",")))
     for step in range(round(manoeuvre.settle_s * args.rate)):
         vehicle.step(manoeuvre.at(-1.0))
 
@@ -60,7 +63,7 @@ def main() -> None:
         force_n += vehicle.ground_force_n / every
         if (step + 1) % every == 0:
             row = [(step + 1) / args.rate, *vehicle.observe(), *force_n.tolist()]
-            print(",".join(f"{value:.9g}" for value in row))
+            print(",".join(f"{value:.7g}" for value in row))
             force_n[:] = 0.0
     print(json.dumps({"steps": steps, "step_ns": vehicle.step_ns / steps}), file=sys.stderr)
 

@@ -26,7 +26,7 @@ class Settings:
     # Friction regularised this much stiffer than the normal direction.
     impratio: float = 1.0
     # Share of a contact that is constraint; its inverse part is a mass that the tyre does not have.
-    impedance: float = 0.5
+    impedance: float = 0.3
 
 
 def build(machine: Machine, settings: Settings, ground: Grid | None) -> mujoco.MjModel:

@@ -24,7 +24,7 @@ class Vehicle:
         self._joints = JointLocks(machine)
         self._drive = Drive(machine)
         self._index()
-        self._place(stroke_m)
+        self._extend(stroke_m)
         self.ground_force_n = np.zeros(len(WHEELS))
         self.step_ns = 0
 
@@ -45,7 +45,7 @@ class Vehicle:
         model.jnt_stiffness[stiffness_at] = self._joints.stiffness_nm
         model.dof_damping[damping_at] = self._joints.damping_nms
 
-    def _place(self, stroke_m: float) -> None:
+    def _extend(self, stroke_m: float) -> None:
         """Arms at their stroke, all wheels just touching level ground."""
         linkage = self._machine.linkage
         reference = linkage.angle_rad(REFERENCE_STROKE_M)
@@ -53,6 +53,16 @@ class Vehicle:
         self.data.qpos[self._at["arm"]] = angle - reference
         self.data.qpos[2] = linkage.drop_m(angle) - linkage.drop_m(reference)
         mujoco.mj_forward(self.model, self.data)
+
+    def place(self, x: float, y: float, z: float, yaw: float, roll: float, pitch: float) -> None:
+        """Moves the whole machine; angles are the bench's: right side high, nose up > 0."""
+        turns = [np.empty(4) for _ in range(3)]
+        for turn, axis, angle in zip(turns, np.eye(3), (-roll, -pitch, yaw), strict=True):
+            mujoco.mju_axisAngle2Quat(turn, axis, angle)
+        whole = turns[2]
+        for turn in (turns[1], turns[0]):
+            mujoco.mju_mulQuat(whole, whole.copy(), turn)
+        self.data.qpos[:7] = (x, y, z, *whole)
 
     def step(self, actuation: Actuation) -> None:
         """One time step under constant actuation."""

@@ -135,6 +135,8 @@ impl Programs {
         command.arg("--manoeuvres").arg(self.manoeuvres());
         command.arg(format!("--rate={}", job.rate_hz));
         command.args(engine.mujoco_arguments()).args(job.mujoco);
+        let start = text_of(self.example("trajectory").args(["start", job.terrain]))?;
+        command.arg(format!("--start={}", start.trim()));
         // Level ground is a plane to both.
         if job.terrain != "flat" {
             command.arg("--grid").arg(self.grid(job.terrain)?);

@@ -1,0 +1,106 @@
+//! Independent environments on more and more threads: steps a second, and the efficiency of it.
+//!
+//! Steps a second are by the clock on the wall, so they mean something on an idle machine only. The
+//! processor's time for a step is told as well: where others are busy it still shows whether one
+//! thread's work makes another's dearer.
+//!
+//! ```sh
+//! cargo run --release -p xt28-sim --example scaling
+//! ```
+// A program: it prints and reads the clock.
+#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::time::{ClockId, clock_gettime};
+use xt28_machine::{Machine, PerWheel};
+use xt28_sim::{Actuation, Bodies, Effects, Plant, RapierBodies, Terrain, Vehicle};
+
+/// Steps per second of simulated time.
+const RATE_HZ: u32 = 120;
+/// Environments a thread.
+const ENVIRONMENTS: usize = 4;
+/// Steps of each environment that are timed.
+const STEPS: usize = 1200;
+/// Times each number of threads is measured; the quickest counts, for others use the machine too.
+const REPEATS: usize = 5;
+
+fn main() -> Result<(), String> {
+    let rough = concat!(env!("CARGO_MANIFEST_DIR"), "/../tools/yardstick/rough.toml");
+    let ground = Terrain::load(rough.as_ref()).map_err(|error| error.to_string())?;
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    println!(
+        "\n{ENVIRONMENTS} environments a thread at {RATE_HZ} Hz on rough ground, {cores} cores\n"
+    );
+    println!("| engine | threads | steps/s | efficiency | processor us/step |");
+    println!("|---|---|---|---|---|");
+    measure::<RapierBodies>("rapier", &ground, cores);
+    Ok(())
+}
+
+/// Prints a row for each number of threads: 1, 2, 4 and so on to one a core.
+fn measure<B: Bodies + Send>(name: &str, ground: &Terrain, cores: usize) {
+    let counts = (0..).map(|power| 1 << power).take_while(|&threads| threads <= cores);
+    let counts: Vec<usize> = counts.collect();
+    let mut best = vec![Pace { steps_per_s: 0.0, processor_us: f64::MAX }; counts.len()];
+    // Numbers of threads take turns, so that a busy moment does not meet one of them alone.
+    for _ in 0..REPEATS {
+        for (best, &threads) in best.iter_mut().zip(&counts) {
+            let pace = pace::<B>(ground, threads);
+            best.steps_per_s = best.steps_per_s.max(pace.steps_per_s);
+            best.processor_us = best.processor_us.min(pace.processor_us);
+        }
+    }
+    for (pace, &threads) in best.iter().zip(&counts) {
+        let Pace { steps_per_s, processor_us } = pace;
+        #[allow(clippy::cast_precision_loss)]
+        let efficiency = steps_per_s / (best[0].steps_per_s * threads as f64);
+        println!("| {name} | {threads} | {steps_per_s:.0} | {efficiency:.2} | {processor_us:.1} |");
+    }
+}
+
+/// How quick one number of threads is.
+#[derive(Clone, Copy)]
+struct Pace {
+    /// All threads' steps over the time that the slowest of them took.
+    steps_per_s: f64,
+    /// Processor time of a step, mean over the threads, us.
+    processor_us: f64,
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
+    let drive = Actuation { pump_displacement: [0.8; 2], ..Actuation::idle(1200.0) };
+    let step = Duration::from_secs_f64(1.0 / f64::from(RATE_HZ));
+    let settled = || {
+        let (machine, effects) = (Machine::xt28(), Effects::default());
+        let strokes = PerWheel::splat(0.17);
+        let mut vehicle = Vehicle::<B>::with(&machine, &effects, ground, strokes, step);
+        (0..RATE_HZ).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
+        vehicle
+    };
+    let mut groups: Vec<Vec<Vehicle<B>>> =
+        (0..threads).map(|_| (0..ENVIRONMENTS).map(|_| settled()).collect()).collect();
+    let work = |group: &mut Vec<Vehicle<B>>| {
+        let begun_us = processor_us();
+        for _ in 0..STEPS {
+            group.iter_mut().for_each(|vehicle| vehicle.step(&drive));
+        }
+        processor_us() - begun_us
+    };
+    let begun = Instant::now();
+    let took_us: f64 = thread::scope(|scope| {
+        let running: Vec<_> = groups.iter_mut().map(|group| scope.spawn(|| work(group))).collect();
+        running.into_iter().map(|thread| thread.join().expect("a step does not panic")).sum()
+    });
+    let steps = (threads * ENVIRONMENTS * STEPS) as f64;
+    Pace { steps_per_s: steps / begun.elapsed().as_secs_f64(), processor_us: took_us / steps }
+}
+
+/// Time that this thread has had of the processor, us.
+#[allow(clippy::cast_precision_loss)]
+fn processor_us() -> f64 {
+    let now = clock_gettime(ClockId::ThreadCPUTime);
+    now.tv_sec as f64 * 1e6 + now.tv_nsec as f64 / 1e3
+}

@@ -1,10 +1,13 @@
 //! The arms' blocks alone, driven by the whole vehicle's own signals.
 
+mod arm_rig;
+
+use arm_rig::{ArmRig, DT_S};
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::effects::{Block, CATALOGUE, Scope};
+use xt28_sim::effects::{Block, CATALOGUE, Effect, Scope};
 use xt28_sim::{
-    Actuation, Arm, ArmInput, ArmState, CylinderMotion, Effects, FlowSharing, Plant, RapierBodies,
-    STEP, Steering, SteeringState, Terrain, Vehicle, VehicleState,
+    Actuation, Arm, ArmInput, ArmState, CylinderForce, CylinderMotion, Effects, FlowSharing, Plant,
+    RapierBodies, STEP, Steering, SteeringState, Terrain, Vehicle, VehicleState,
 };
 
 const STROKE_M: f64 = 0.17;
@@ -62,7 +65,12 @@ impl Hydraulics {
     }
 
     /// Steps on what the vehicle was commanded and on what it measured before the step.
-    fn step(&mut self, actuation: &Actuation, before: &VehicleState, dt_s: f64) {
+    fn step(
+        &mut self,
+        actuation: &Actuation,
+        before: &VehicleState,
+        dt_s: f64,
+    ) -> PerWheel<CylinderForce> {
         let inputs = PerWheel::from_fn(|w| ArmInput {
             command: actuation.arm_opening[w],
             load_n: before.cylinder_force_n[w],
@@ -76,9 +84,9 @@ impl Hydraulics {
         }
         let share = self.flow.share(demand_m3_s);
         self.least_share = self.least_share.min(share);
-        for w in Wheel::ALL {
-            self.arms[w].fill(&mut self.states[w], &inputs[w], share * speeds[w], dt_s);
-        }
+        PerWheel::from_fn(|w| {
+            self.arms[w].fill(&mut self.states[w], &inputs[w], share * speeds[w], dt_s)
+        })
     }
 }
 
@@ -118,5 +126,90 @@ fn arms_alone_reproduce_the_whole_with_every_effect_at_once() {
         }
         let short = effects != Effects::default();
         assert_eq!(alone.least_share < 0.9, short, "pump at {}", alone.least_share);
+    }
+}
+
+fn arm_effects() -> impl Iterator<Item = &'static Effect> {
+    CATALOGUE.iter().filter(|effect| effect.block == Block::Arms)
+}
+
+/// A third of the way into an effect's range; the pump just short for one arm.
+fn strong(effect: &Effect) -> Effects {
+    let mut effects = Effects::default();
+    for p in effect.parameters {
+        p.set(&mut effects, Scope::All, p.neutral + (p.range[1] - p.neutral) / 3.0);
+    }
+    if effect.name == "pump-flow-limit" {
+        effects.pump_flow.flow_m3_s = 0.000_4;
+    }
+    effects
+}
+
+/// An arm's effect acts on the arms it is set for and leaves the blocks of the others alone.
+#[test]
+fn an_effect_stays_on_its_arm() {
+    let machine = Machine::xt28();
+    let dt_s = STEP.as_secs_f64();
+    let run = |effects: &Effects| {
+        let mut alone = Hydraulics::new(&machine, effects, dt_s);
+        let mut seen = VehicleState::default();
+        let mut forces = PerWheel::splat(0.0);
+        for step in 0..400 {
+            let t = f64::from(step) * dt_s;
+            seen.stroke_m = PerWheel::splat(STROKE_M + 0.05 * t.sin());
+            seen.stroke_rate_m_s = PerWheel::splat(0.05 * t.cos());
+            seen.cylinder_force_n = PerWheel::splat(6e4);
+            // The middle left wheel hangs.
+            seen.cylinder_force_n[Wheel::Ml] = -12e3;
+            for (w, force) in alone.step(&driven(t), &seen, dt_s).iter() {
+                forces[w] += force.force_n;
+            }
+        }
+        forces
+    };
+    let nominal = run(&Effects::default());
+    for effect in arm_effects().filter(|effect| effect.has_scope() && effect.name != "arm-gain") {
+        let strong = strong(effect);
+        let mut effects = Effects::default();
+        effects.arms[Wheel::Ml] = strong.arms[Wheel::Ml];
+        let with = run(&effects);
+        for w in Wheel::ALL {
+            assert_eq!(with[w] == nominal[w], w != Wheel::Ml, "{} on {w}", effect.name);
+        }
+    }
+}
+
+/// Finite differences of five seconds on the rig: stroke and oil force change in proportion to a
+/// nudge of a millionth, for every parameter, alone and on top of all the others.
+#[test]
+fn outputs_are_smooth_in_every_parameter() {
+    let run = |effects: &Effects| -> Vec<[f64; 2]> {
+        let mut rig = ArmRig::new(effects, 6e3, STROKE_M, 5e4);
+        let steps = (0..1000).map(|step| {
+            let t = f64::from(step) * DT_S;
+            // A load that lifts off now and then.
+            rig.step(0.3 * (1.1 * t).sin(), 4e4 + 5e4 * (2.3 * t).sin());
+            [rig.motion.stroke_m, rig.oil_force_n()]
+        });
+        steps.collect()
+    };
+    let apart = |a: &[[f64; 2]], b: &[[f64; 2]], i: usize| {
+        a.iter().zip(b).map(|(a, b)| (a[i] - b[i]).abs()).fold(0.0, f64::max)
+    };
+    for (effect, p) in arm_effects().flat_map(|e| e.parameters.iter().map(move |p| (e, p))) {
+        for base in [strong(effect), all_at_once()] {
+            let nudged = |share: f64| {
+                let mut effects = base.clone();
+                p.set(&mut effects, Scope::All, p.get(&base, Scope::All) * (1.0 + share));
+                run(&effects)
+            };
+            let (here, once, twice) = (run(&base), nudged(1e-6), nudged(2e-6));
+            for (i, bound) in [(0, 1e-6), (1, 0.5)] {
+                let (one, two) = (apart(&here, &once, i), apart(&here, &twice, i));
+                let what = format!("{} {} [{i}]: {one:e}, {two:e}", effect.name, p.name);
+                assert!(one < bound, "{what}");
+                assert!(one < bound * 1e-3 || (two / one - 2.0).abs() < 0.01, "{what}");
+            }
+        }
     }
 }

@@ -8,6 +8,9 @@ use xt28_sim::{
     Actuation, Effects, Plant, Ramp, RapierBodies, STEP, Terrain, Vehicle, VehicleState,
 };
 
+/// Some numbers of a state.
+type Signal = fn(&VehicleState) -> Vec<f64>;
+
 /// Onto a ramp with everything in motion: drive, both joints and all arms.
 fn trace(effects: &Effects, steps: u32) -> Vec<VehicleState> {
     let ramp = Ramp { x_m: [0.3, 1.3, 3.0, 4.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
@@ -67,12 +70,12 @@ fn every_effect_fades_in_from_nominal() {
     let nominal = trace(&Effects::default(), 400);
     for effect in CATALOGUE {
         let with = trace(&overlay(&[effect], 1e-6).effects(), 400);
-        let most = |signal: fn(&VehicleState) -> Vec<f64>| {
+        let most = |signal: Signal| {
             let both = with.iter().zip(&nominal).map(|(a, b)| (signal(a), signal(b)));
             let apart = both.flat_map(|(a, b)| a.into_iter().zip(b).map(|(a, b)| (a - b).abs()));
             apart.fold(0.0, f64::max)
         };
-        let bounds: [(&str, fn(&VehicleState) -> Vec<f64>, f64); 5] = [
+        let bounds: [(&str, Signal, f64); 5] = [
             ("stroke", |s| s.stroke_m.0.to_vec(), 1e-5),
             ("cylinder force", |s| s.cylinder_force_n.0.to_vec(), 20.0),
             ("joint", |s| s.joint_rad.to_vec(), 1e-5),

@@ -1,0 +1,349 @@
+//! Each effect of the arms by its signature: on the whole vehicle where the vehicle shows it, on a
+//! rig with a single arm where a known load has to be put on.
+
+mod arm_rig;
+
+use arm_rig::{ArmRig, DT_S};
+use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_sim::effects::{Block, CATALOGUE, Scope, find};
+use xt28_sim::{Actuation, Effects, Plant, RapierBodies, STEP, Terrain, Vehicle, VehicleState};
+
+const FULL_M_S: f64 = 0.212;
+const FRONT: [Wheel; 2] = [Wheel::Fr, Wheel::Fl];
+
+fn with(name: &str, scope: &str, values: &[(&str, f64)]) -> Effects {
+    let mut effects = Effects::default();
+    let effect = find(name).expect("the effect is in the catalogue");
+    for (key, value) in values {
+        let parameter = effect.parameter(key).expect("the effect has the parameter");
+        parameter.set(&mut effects, scope.parse().expect("a scope"), *value);
+    }
+    effects
+}
+
+/// Two seconds of standing still, then the states of `seconds` under these arm openings.
+fn record(
+    effects: &Effects,
+    seconds: f64,
+    opening: impl Fn(f64, Wheel) -> f64,
+) -> Vec<VehicleState> {
+    let strokes = PerWheel::splat(0.17);
+    let mut vehicle: Vehicle<RapierBodies> =
+        Vehicle::with(&Machine::xt28(), effects, &Terrain::Flat, strokes, STEP);
+    (0..400).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
+    let steps = (seconds / DT_S).round() as u32;
+    let states = (0..steps).map(|step| {
+        let t = f64::from(step) * DT_S;
+        let arm_opening = PerWheel::from_fn(|wheel| opening(t, wheel));
+        vehicle.step(&Actuation { arm_opening, ..Actuation::idle(1200.0) });
+        *vehicle.state()
+    });
+    states.collect()
+}
+
+/// Mean speed of an arm's oil between two times: of the stroke, and of what the lock gives way.
+fn oil_speed_m_s(states: &[VehicleState], wheel: Wheel, from_s: f64, to_s: f64) -> f64 {
+    let at = |t: f64| {
+        let s = &states[(t / DT_S).round() as usize];
+        let stiffness_n_m = Machine::xt28().hydraulics.lock_stiffness_n_m;
+        let damping_n_s_m = Machine::xt28().hydraulics.lock_damping_n_s_m;
+        let spring_n = s.cylinder_force_n[wheel] + damping_n_s_m * s.stroke_rate_m_s[wheel];
+        s.stroke_m[wheel] + spring_n / stiffness_n_m
+    };
+    (at(to_s) - at(from_s)) / (to_s - from_s)
+}
+
+fn pulse(t: f64, on_s: f64, off_s: f64, opening: f64) -> f64 {
+    if (on_s..off_s).contains(&t) { opening } else { 0.0 }
+}
+
+#[test]
+fn a_delay_shifts_the_strokes_by_itself() {
+    let command = |t: f64, _: Wheel| pulse(t, 0.1, 1.1, 0.3);
+    let nominal = record(&Effects::default(), 2.0, command);
+    let late = record(&with("arm-delay", "all", &[("delay_s", 0.2)]), 2.0, command);
+    for (then, now) in nominal.iter().zip(&late[40..]) {
+        for wheel in Wheel::ALL {
+            let apart_m = now.stroke_m[wheel] - then.stroke_m[wheel];
+            assert!(apart_m.abs() < 2e-4, "{wheel}: {apart_m}");
+        }
+    }
+    assert!(nominal[60].stroke_m[Wheel::Fr] - late[60].stroke_m[Wheel::Fr] > 5e-3);
+}
+
+#[test]
+fn a_lag_leaves_the_stroke_behind_by_speed_times_its_constant() {
+    let command = |_: f64, _: Wheel| 0.2;
+    let nominal = record(&Effects::default(), 1.5, command);
+    let late = record(&with("valve-lag", "all", &[("time_constant_s", 0.1)]), 1.5, command);
+    for wheel in Wheel::ALL {
+        let behind_m = nominal[299].stroke_m[wheel] - late[299].stroke_m[wheel];
+        assert!((behind_m - 0.2 * FULL_M_S * 0.1).abs() < 2e-4, "{wheel}: {behind_m}");
+    }
+}
+
+#[test]
+fn a_play_keeps_the_speed_when_the_command_turns() {
+    // Up to 0.2, then back by less than the play, then by more.
+    let command = |t: f64, _: Wheel| {
+        if t < 1.0 {
+            0.2
+        } else if t < 2.0 {
+            0.17
+        } else {
+            0.1
+        }
+    };
+    let play = record(&with("valve-hysteresis", "all", &[("width", 0.04)]), 3.0, command);
+    for wheel in Wheel::ALL {
+        for (from_s, opening) in [(0.4, 0.18), (1.4, 0.18), (2.4, 0.12)] {
+            let speed_m_s = oil_speed_m_s(&play, wheel, from_s, from_s + 0.5);
+            assert!((speed_m_s - opening * FULL_M_S).abs() < 1e-4, "{wheel}: {speed_m_s}");
+        }
+    }
+}
+
+#[test]
+fn below_the_deadband_nothing_moves_and_beyond_it_is_missing() {
+    let command = |t: f64, _: Wheel| if t < 2.0 { 0.035 } else { -0.1 };
+    let band = record(&with("valve-deadband", "all", &[("deadband", 0.04)]), 3.0, command);
+    for wheel in Wheel::ALL {
+        let still_m_s = oil_speed_m_s(&band, wheel, 0.0, 1.9);
+        assert!(still_m_s.abs() < 1e-8, "{wheel}: {still_m_s}");
+        let speed_m_s = oil_speed_m_s(&band, wheel, 2.4, 2.9);
+        assert!((speed_m_s + 0.06 * FULL_M_S).abs() < 1e-5, "{wheel}: {speed_m_s}");
+    }
+}
+
+#[test]
+fn gain_and_asymmetry_scale_the_speeds() {
+    let command = |t: f64, _: Wheel| if t < 1.0 { 0.2 } else { -0.2 };
+    let asymmetric = [("extension_factor", 0.7), ("contraction_factor", 1.4)];
+    for (effects, up, down) in [
+        (with("valve-gain", "front", &[("factor", 1.3)]), 1.3, 1.3),
+        (with("speed-asymmetry", "front", &asymmetric), 0.7, 1.4),
+    ] {
+        let states = record(&effects, 2.0, command);
+        for wheel in Wheel::ALL {
+            let [up, down] = if FRONT.contains(&wheel) { [up, down] } else { [1.0, 1.0] };
+            for (from_s, wanted_m_s) in [(0.4, 0.2 * FULL_M_S * up), (1.4, -0.2 * FULL_M_S * down)]
+            {
+                let speed_m_s = oil_speed_m_s(&states, wheel, from_s, from_s + 0.5);
+                assert!((speed_m_s - wanted_m_s).abs() < 1e-5, "{wheel}: {speed_m_s}");
+            }
+        }
+    }
+}
+
+/// The paper's machine: front heavy, its lighter rear arms extend faster.
+#[test]
+fn heavier_arms_extend_slower_by_the_orifice_law() {
+    let effects = with("load-dependent-speed", "all", &[("droop", 0.02)]);
+    let states = record(&effects, 1.0, |_, _| 0.2);
+    let speeds = PerWheel::from_fn(|wheel| oil_speed_m_s(&states, wheel, 0.4, 0.9));
+    for wheel in Wheel::ALL {
+        let load_pa = states[80..180].iter().map(|s| s.cylinder_force_n[wheel]).sum::<f64>()
+            / 100.0
+            / Machine::xt28().arms.area_bore_m2;
+        let wanted_m_s = 0.2 * FULL_M_S * (1.0 - 0.02 * load_pa / 8e5).sqrt();
+        assert!((speeds[wheel] / wanted_m_s - 1.0).abs() < 5e-3, "{wheel}: {}", speeds[wheel]);
+    }
+    assert!(speeds[Wheel::Br] > 1.1 * speeds[Wheel::Fr], "{speeds:?}");
+}
+
+#[test]
+fn a_short_pump_slows_all_who_ask_and_nobody_who_asks_alone() {
+    let effects = with("pump-flow-limit", "all", &[("flow_m3_s", 0.002)]);
+    let all = record(&effects, 1.0, |_, wheel| if wheel == Wheel::Br { 0.1 } else { 0.3 });
+    let area_m2 = Machine::xt28().arms.area_bore_m2;
+    let share = 0.002 / (1.6 * FULL_M_S * area_m2);
+    for wheel in Wheel::ALL {
+        let asked = if wheel == Wheel::Br { 0.1 } else { 0.3 };
+        let speed_m_s = oil_speed_m_s(&all, wheel, 0.4, 0.9);
+        assert!((speed_m_s - share * asked * FULL_M_S).abs() < 1e-5, "{wheel}: {speed_m_s}");
+    }
+    let alone = |_: f64, wheel: Wheel| if wheel == Wheel::Br { 0.3 } else { 0.0 };
+    assert_eq!(record(&effects, 1.0, alone), record(&Effects::default(), 1.0, alone));
+}
+
+#[test]
+fn a_short_pump_slows_the_steering_with_the_arms() {
+    let turned = |effects: &Effects, arms: f64| {
+        let strokes = PerWheel::splat(0.17);
+        let mut vehicle: Vehicle<RapierBodies> =
+            Vehicle::with(&Machine::xt28(), effects, &Terrain::Flat, strokes, STEP);
+        let mut drive = Actuation::idle(1200.0);
+        drive.pump_displacement = [1.0; 2];
+        (0..800).for_each(|_| vehicle.step(&drive));
+        (drive.steer_opening, drive.arm_opening) = ([0.3, 0.0], PerWheel::splat(arms));
+        (0..300).for_each(|_| vehicle.step(&drive));
+        vehicle.state().joint_rad[0]
+    };
+    let short = with("pump-flow-limit", "all", &[("flow_m3_s", 0.001)]);
+    let nominal_rad = turned(&Effects::default(), 0.2);
+    // The arms ask for twice what there is: joint and arms get a little less than half.
+    let slowed = turned(&short, 0.2) / nominal_rad;
+    assert!((0.4..0.6).contains(&slowed), "{slowed}");
+    assert_eq!(turned(&short, 0.0), turned(&Effects::default(), 0.0));
+}
+
+#[test]
+fn a_leaking_arm_sinks_in_proportion_to_its_load() {
+    let effects = with("leakage-drift", "front", &[("rate_m_s", 0.004)]);
+    let machine = Machine::xt28();
+    let nominal_n = machine.mass_kg() * 9.81 / 6.0 / machine.linkage().at_stroke(0.25).force_ratio;
+    let states = record(&effects, 2.0, |_, _| 0.0);
+    for wheel in Wheel::ALL {
+        let load_n = states.iter().map(|s| s.cylinder_force_n[wheel]).sum::<f64>() / 400.0;
+        let drift_m_s = oil_speed_m_s(&states, wheel, 0.0, 1.99);
+        let leaks = FRONT.contains(&wheel);
+        let wanted_m_s = if leaks { -0.004 * load_n / nominal_n } else { 0.0 };
+        assert!((drift_m_s - wanted_m_s).abs() < 2e-5, "{wheel}: {drift_m_s} {wanted_m_s}");
+        assert!(!leaks || states[399].stroke_m[wheel] < states[0].stroke_m[wheel] - 5e-3);
+    }
+}
+
+/// One wheel drawn up off the ground, then left alone: it hangs, and its arm alone drifts out.
+#[test]
+fn a_hanging_arm_drifts_out_and_standing_ones_stay() {
+    let effects = with("unsupported-sag", "all", &[("rate_m_s", 0.01)]);
+    let lift =
+        |t: f64, wheel: Wheel| if wheel == Wheel::Mr { pulse(t, 0.0, 2.0, -0.3) } else { 0.0 };
+    let states = record(&effects, 4.0, lift);
+    let hanging = &states[799];
+    assert!(hanging.ground_force_n[Wheel::Mr] < 1.0 && hanging.cylinder_force_n[Wheel::Mr] < -1e4);
+    let drift_m_s = oil_speed_m_s(&states, Wheel::Mr, 3.0, 3.99);
+    assert!((drift_m_s / 0.01 - 1.0).abs() < 0.1, "{drift_m_s}");
+    for wheel in Wheel::ALL.into_iter().filter(|&wheel| wheel != Wheel::Mr) {
+        assert!(oil_speed_m_s(&states, wheel, 0.0, 3.99).abs() < 1e-8, "{wheel}");
+    }
+}
+
+/// The load stays what it was; the oil bears the seals on the way up and is helped on the way down.
+#[test]
+fn friction_opens_a_loop_between_the_pressures_up_and_down() {
+    let command = |t: f64, _: Wheel| if t < 1.0 { 0.2 } else { -0.2 };
+    let seals = with("seal-stiction", "all", &[("coulomb_n", 3000.0)]);
+    let (dragged, free) = (record(&seals, 2.0, command), record(&Effects::default(), 2.0, command));
+    // The frame swings for a while after each start, hence the means over half a second.
+    for (from, wanted_n) in [(100, 3000.0), (300, -3000.0)] {
+        let both = dragged[from..from + 100].iter().zip(&free[from..from + 100]);
+        let more = both.map(|(a, b)| a.cylinder_force_n.sum() - b.cylinder_force_n.sum());
+        let mean_n = more.sum::<f64>() / 600.0;
+        assert!((mean_n - wanted_n).abs() < 150.0, "{mean_n}");
+    }
+}
+
+#[test]
+fn seals_hold_below_breakaway_and_slide_beyond() {
+    let seals = with("seal-stiction", "all", &[("coulomb_n", 3000.0), ("stribeck_n", 2000.0)]);
+    // Sinking 5 and 20 s after more load came on within a second.
+    let sunk_m = |effects: &Effects, more_n: f64| {
+        let mut rig = ArmRig::new(effects, 6e3, 0.17, 5e4);
+        let strokes: Vec<f64> = (0..4000)
+            .map(|step| {
+                rig.step(0.0, 5e4 + more_n * (f64::from(step) * DT_S).min(1.0));
+                rig.motion.stroke_m
+            })
+            .collect();
+        [0.17 - strokes[1000], 0.17 - strokes[3999]]
+    };
+    // The closed oil gives way by 1 mm for 2 kN where nothing holds the rod.
+    let [_, free_m] = sunk_m(&Effects::default(), 4800.0);
+    assert!((free_m - 2.4e-3).abs() < 1e-6, "{free_m}");
+    // Held, it sinks by what the seals yield and not a micrometre more.
+    let [soon_m, held_m] = sunk_m(&seals, 4800.0);
+    assert!(held_m < 6e-4 && (held_m - soon_m).abs() < 1e-6, "{soon_m} {held_m}");
+    // Beyond breakaway it slides until the oil has what Coulomb's friction leaves, or a bit more.
+    let [_, slid_m] = sunk_m(&seals, 12e3);
+    assert!((12e3 - slid_m * 2.0e6 - 4000.0).abs() < 1001.0, "{slid_m}");
+}
+
+/// Ringing of a mass on the arm, Hz: from the crossings of its rest stroke.
+fn ringing_hz(effects: &Effects, load_n: f64) -> f64 {
+    let mut rig = ArmRig::new(effects, load_n / 9.81, 0.17, load_n);
+    rig.motion.stroke_rate_m_s = 1e-3;
+    let mut crossings = Vec::new();
+    let mut before_m = 0.0;
+    for step in 0..200 {
+        rig.step(0.0, load_n);
+        let now_m = rig.motion.stroke_m - 0.17;
+        if before_m * now_m < 0.0 {
+            crossings.push(f64::from(step) * DT_S - DT_S * now_m / (now_m - before_m));
+        }
+        before_m = now_m;
+    }
+    let (first, last) = (crossings[0], crossings[crossings.len() - 1]);
+    (crossings.len() - 1) as f64 / (2.0 * (last - first))
+}
+
+/// On a linear lock a heavier mass rings slower; on gas k grows with (p + 1 atm)^(1 + 1/n).
+#[test]
+fn gas_rings_as_the_polytropic_law_says() {
+    let soft = |share: f64| {
+        let mut effects = with("lock-damping", "all", &[("factor", 0.1)]);
+        effects.arms = effects.arms.map(|mut arm| {
+            arm.gas.share = share;
+            arm
+        });
+        effects
+    };
+    let [light_n, heavy_n] = [40e3, 100e3];
+    let ratio = |share: f64| ringing_hz(&soft(share), heavy_n) / ringing_hz(&soft(share), light_n);
+    let linear = (light_n / heavy_n).sqrt();
+    assert!((ratio(0.0) / linear - 1.0).abs() < 0.03, "{}", ratio(0.0));
+    let absolute_pa = |load_n: f64| (load_n + 5e5 * 0.00589) / 0.00785 + 1.013e5;
+    let stiffer = (absolute_pa(heavy_n) / absolute_pa(light_n)).powf(1.0 + 1.0 / 1.3);
+    assert!((ratio(1.0) / (linear * stiffer.sqrt()) - 1.0).abs() < 0.03, "{}", ratio(1.0));
+}
+
+/// What is left of a swing after a period goes with exp(-pi c / (m omega)).
+#[test]
+fn damping_scales_the_decay() {
+    let left = |factor: f64| {
+        let effects = with("lock-damping", "all", &[("factor", factor)]);
+        let mut rig = ArmRig::new(&effects, 2e5, 0.17, 5e4);
+        rig.motion.stroke_rate_m_s = 0.01;
+        // omega = sqrt(2e6 / 2e5): a period is 1.987 s.
+        let rates: Vec<f64> = (0..400)
+            .map(|_| {
+                rig.step(0.0, 5e4);
+                rig.rate_m_s()
+            })
+            .collect();
+        rates[397] / 0.01
+    };
+    // The implicit step adds a little damping of its own, the same to both.
+    let wanted = (-core::f64::consts::PI * 8.5e4 / (2e5 * 10.0_f64.sqrt())).exp();
+    assert!(
+        (left(2.0) / left(1.0) / wanted - 1.0).abs() < 0.02,
+        "{} {wanted}",
+        left(2.0) / left(1.0)
+    );
+}
+
+/// What acts on the way from command to oil is not there while the arms' valves are closed, and the
+/// ECU's gains are not the plant's.
+#[test]
+fn valve_effects_leave_closed_valves_alone() {
+    let drive = |effects: &Effects| {
+        let strokes = PerWheel::splat(0.17);
+        let mut vehicle: Vehicle<RapierBodies> =
+            Vehicle::with(&Machine::xt28(), effects, &Terrain::Flat, strokes, STEP);
+        let mut actuation = Actuation::idle(1200.0);
+        (actuation.pump_displacement, actuation.steer_opening) = ([0.8; 2], [0.3, 0.1]);
+        (0..600).for_each(|_| vehicle.step(&actuation));
+        *vehicle.state()
+    };
+    let mut effects = Effects::default();
+    let inside =
+        ["leakage-drift", "unsupported-sag", "accumulator-gas", "lock-damping", "seal-stiction"];
+    for effect in CATALOGUE.iter().filter(|e| e.block == Block::Arms && !inside.contains(&e.name)) {
+        for p in effect.parameters.iter().filter(|p| p.name != "flow_m3_s") {
+            p.set(&mut effects, Scope::All, p.neutral + 0.5 * (p.range[1] - p.neutral));
+        }
+    }
+    effects.pump_flow.flow_m3_s = 0.001;
+    assert_ne!(effects, Effects::default());
+    assert_eq!(drive(&effects), drive(&Effects::default()));
+}

@@ -1,11 +1,14 @@
 //! The transmission and steering ECU ("DMS"): commands and sensors in, currents and frames out.
 
 mod brake;
+mod droop;
 mod engine;
 mod frames;
 mod sensing;
 mod sequence;
+mod slip_trim;
 mod steering;
+mod turn;
 
 use std::sync::Arc;
 
@@ -15,9 +18,11 @@ use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, PerWheel, SimTime};
 
 use self::brake::ParkingBrake;
+use self::droop::Relief;
 use self::engine::EngineLink;
 use self::sensing::DriveReadings;
 use self::sequence::{ThrottleLag, displacements};
+use self::slip_trim::SlipTrim;
 use self::steering::Steering;
 pub use self::steering::SteeringGains;
 use crate::command_stream::CommandStream;
@@ -91,6 +96,9 @@ pub struct DriveEcu {
     state: State,
     refusal: Refusal,
     throttle: ThrottleLag,
+    trim: SlipTrim,
+    relief: Relief,
+    working_rpm: f64,
     steering: Steering,
     brake: ParkingBrake,
     engine: EngineLink,
@@ -117,6 +125,9 @@ impl DriveEcu {
             state: State::Init,
             refusal: Refusal::None,
             throttle: ThrottleLag::new(&machine.drive),
+            trim: SlipTrim::new(&machine),
+            relief: Relief::default(),
+            working_rpm: machine.drive.engine_speed_rpm,
             steering: Steering::new(&machine.articulation),
             brake: ParkingBrake::default(),
             engine: EngineLink::new(machine.drive.engine_speed_rpm),
@@ -193,7 +204,8 @@ impl DriveEcu {
         let braked = self.brake.step(now, self.state, demand.map(|d| d.brake), readings.speed_m_s);
         out.brake_released = !braked;
         let active = demand.filter(|_| self.state == State::Active);
-        let pump = self.drive(active.filter(|_| !braked), braked, out);
+        let throttle = active.filter(|_| !braked).map_or(0.0, |d| d.throttle);
+        let pump = self.drive(now, throttle, braked, &readings, out);
         self.steer(active, &readings, out);
 
         out.can1.clear();
@@ -243,17 +255,37 @@ impl DriveEcu {
         Ok(())
     }
 
-    /// Displacements for the demand; returns that of the pumps. A braked machine is not driven.
-    fn drive(&mut self, demand: Option<DriveDemand>, braked: bool, out: &mut DriveOutputs) -> f64 {
+    /// Displacements for the throttle; returns the one asked of the pumps. A braked machine is not
+    /// driven.
+    fn drive(
+        &mut self,
+        now: SimTime,
+        throttle: f64,
+        braked: bool,
+        readings: &DriveReadings,
+        out: &mut DriveOutputs,
+    ) -> f64 {
         if braked {
             self.throttle.reset();
         }
-        let demand = self.throttle.step(demand.map_or(0.0, |d| d.throttle));
-        let displacement = displacements(demand);
+        let driven = throttle != 0.0;
+        let target = droop::demand(throttle, self.working_rpm, self.engine.asked_rpm());
+        let share = self.relief.step(self.engine.speed_share(now), driven);
+        let displacement = displacements(self.throttle.step(target) * share);
         let [a_ma, b_ma] = pins::pump_ma(displacement.pump);
-        out.pump_ma = [a_ma, b_ma, a_ma, b_ma];
-        out.motor_ma = PerWheel::splat(pins::motor_ma(displacement.motor));
-        pins::pump_displacement(a_ma, b_ma)
+        let asked = pins::pump_displacement(a_ma, b_ma);
+        if asked == 0.0 {
+            self.trim.reset();
+        }
+        let trim = if driven {
+            self.trim.step(&readings.wheel_rad_s, readings.joint_deg)
+        } else {
+            self.trim.hold()
+        };
+        let [one, two] = trim.pump.map(|share| pins::pump_ma(displacement.pump * share));
+        out.pump_ma = [one[0], one[1], two[0], two[1]];
+        out.motor_ma = trim.motor.map(|share| pins::motor_ma(displacement.motor * share));
+        asked
     }
 
     fn steer(

@@ -285,12 +285,13 @@ fn throttle_and_angle_become_currents() {
         drive.send(-50.0, 12.0, true);
         assert_eq!(drive.tick().state, DriveStatusState::Active);
     }
-    // Half throttle in reverse: pumps full on A, motors at two thirds.
+    // Half throttle in reverse, with an engine asked for 1500 instead of 1200 rpm: 0.4 of full speed,
+    // so the pumps are full on A and the motors at a third over that.
     let [a1, b1, a2, b2] = drive.out.pump_ma;
     assert_eq!((b1, b2, a1), (0.0, 0.0, a2));
     assert!((a1 - 605.0).abs() < 1e-9, "{a1}");
     let motor_ma = drive.out.motor_ma[Wheel::Ml];
-    assert!((motor_ma - (650.0 - 500.0 / 1.5)).abs() < 1e-6, "{motor_ma}");
+    assert!((motor_ma - (650.0 - 500.0 / 1.2)).abs() < 1e-6, "{motor_ma}");
     // 2 deg to the left for 3 s, from the ideal-form PI; the rear joint lags 0.6 deg.
     let front = 0.025 * (2.0 + 0.2 * 6.0);
     assert!((drive.out.steer_front_a_ma - (415.0 + 315.0 * front)).abs() < 1e-6);

@@ -44,11 +44,21 @@ impl EngineLink {
         self.requested_rpm = rpm;
     }
 
+    /// The speed asked of the engine, in its range, rpm.
+    pub(crate) const fn asked_rpm(&self) -> f64 {
+        let [low, high] = REQUEST_RPM;
+        self.requested_rpm.max(low).min(high)
+    }
+
+    /// Speed over the speed asked for; `None` while nothing is heard of it.
+    pub(crate) fn speed_share(&self, now: SimTime) -> Option<f64> {
+        (!self.is_lost(now)).then(|| self.speed_rpm / self.asked_rpm())
+    }
+
     /// The request: 1 for speed control, then the speed.
     pub(crate) fn request_frame(&self) -> Frame {
-        let [low, high] = REQUEST_RPM;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 14400 at most
-        let raw = (self.requested_rpm.max(low).min(high) / RPM_PER_BIT).round() as u16;
+        let raw = (self.asked_rpm() / RPM_PER_BIT).round() as u16;
         let [lsb, msb] = raw.to_le_bytes();
         Frame::new(REQUEST_ID, &[1, lsb, msb, 0, 255, 0, 255, 255]).expect("eight bytes")
     }

@@ -13,6 +13,7 @@ pub mod effects;
 mod parts;
 mod plant;
 mod rapier;
+mod reduced;
 mod sensors;
 mod state;
 mod vehicle;
@@ -30,6 +31,7 @@ pub use parts::{
 };
 pub use plant::{Plant, STEP};
 pub use rapier::RapierBodies;
+pub use reduced::ReducedBodies;
 pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample, Readings, Sensors};
 pub use state::VehicleState;
 pub use vehicle::Vehicle;

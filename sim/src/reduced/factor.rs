@@ -1,0 +1,170 @@
+//! The tree's mass matrix with whatever stiffens it, factored from the wheels to the front frame.
+//!
+//! The vehicle's tree is fixed: wheel on arm, arm on frame, frame behind frame. Eliminating each
+//! hinge leaves a rank-one change of its parent's spatial matrix (the articulated-body recursion,
+//! Featherstone chapter 7), so the 20 x 20 matrix is never formed. What a contact adds acts on one
+//! body alone and joins that body's spatial matrix. Sliding friction follows the normal force but
+//! not the reverse, so the matrices are not symmetric and rows and columns are kept apart.
+
+use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
+use super::spatial::{
+    Spatial, Spatial6, add, add_scaled, add6, apply, apply_transposed, dot, take_rank_one,
+};
+use super::tree::Tree;
+
+/// What stiffens the tree within a step, beside the bodies' inertias; all times the step, kg and kg m².
+#[derive(Clone, Debug)]
+pub(super) struct Stiffening {
+    /// On each hinge's own rate: implicit springs, dampers, brakes. The first six stay zero.
+    pub(super) hinge: Generalized,
+    /// On each wheel's twist: its contacts.
+    pub(super) wheel: [Spatial6; 6],
+    /// On each frame's twist: contacts of the hull; `None` while none touches.
+    pub(super) frame: Option<[Spatial6; 3]>,
+}
+
+/// A hinge that was eliminated.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pivot {
+    column: Spatial,
+    row: Spatial,
+    inverse: f64,
+}
+
+/// The factors.
+#[derive(Clone, Debug)]
+pub(super) struct Factors {
+    pivot: [Pivot; FREEDOMS - 6],
+    root: Spatial6,
+}
+
+impl Factors {
+    /// `None` if the matrix has no positive pivots, which friction that jams an arm can do.
+    pub(super) fn new(
+        pose: &Pose,
+        inertias: &BodyInertias<Spatial6>,
+        with: &Stiffening,
+    ) -> Option<Self> {
+        let mut pivot = [Pivot::default(); FREEDOMS - 6];
+        let mut frame = inertias.frame;
+        if let Some(touching) = &with.frame {
+            for (frame, touching) in frame.iter_mut().zip(touching) {
+                add6(frame, touching);
+            }
+        }
+        for i in 0..6 {
+            let mut body = inertias.wheel[i];
+            add6(&mut body, &with.wheel[i]);
+            let hinge = WHEELS + i;
+            pivot[hinge - 6] = eliminate(&mut body, &pose.arm[i].wheel_axis, with.hinge[hinge])?;
+            add6(&mut body, &inertias.arm[i]);
+            let hinge = ARMS + i;
+            pivot[hinge - 6] = eliminate(&mut body, &pose.arm[i].arm_axis, with.hinge[hinge])?;
+            add6(&mut frame[Tree::frame_of(i)], &body);
+        }
+        for i in (0..2).rev() {
+            let mut body = frame[i + 1];
+            let hinge = JOINTS + i;
+            pivot[hinge - 6] = eliminate(&mut body, &pose.joint_axis[i], with.hinge[hinge])?;
+            add6(&mut frame[i], &body);
+        }
+        Some(Self { pivot, root: factor_root(frame[0])? })
+    }
+
+    /// The velocities `x` with (matrix) x = `right`.
+    pub(super) fn solve(&self, pose: &Pose, right: &Generalized) -> Generalized {
+        let mut out = *right;
+        // Wrenches that the eliminated hinges hand to their parents.
+        let mut on_frame = [[0.0; 6]; 3];
+        for i in 0..6 {
+            let wheel = &self.pivot[WHEELS + i - 6];
+            let mut handed = [0.0; 6];
+            add_scaled(&mut handed, &wheel.column, out[WHEELS + i] * wheel.inverse);
+            let arm = &self.pivot[ARMS + i - 6];
+            out[ARMS + i] -= dot(&pose.arm[i].arm_axis, &handed);
+            add_scaled(&mut handed, &arm.column, out[ARMS + i] * arm.inverse);
+            add(&mut on_frame[Tree::frame_of(i)], &handed);
+        }
+        for i in (0..2).rev() {
+            let joint = &self.pivot[JOINTS + i - 6];
+            let mut handed = on_frame[i + 1];
+            out[JOINTS + i] -= dot(&pose.joint_axis[i], &handed);
+            add_scaled(&mut handed, &joint.column, out[JOINTS + i] * joint.inverse);
+            add(&mut on_frame[i], &handed);
+        }
+        let mut twist = [[0.0; 6]; 3];
+        twist[0].copy_from_slice(&out[..6]);
+        for (twist, handed) in twist[0].iter_mut().zip(&on_frame[0]) {
+            *twist -= handed;
+        }
+        solve_root(&self.root, &mut twist[0]);
+        out[..6].copy_from_slice(&twist[0]);
+        for i in 0..2 {
+            let joint = &self.pivot[JOINTS + i - 6];
+            let rate = (out[JOINTS + i] - dot(&joint.row, &twist[i])) * joint.inverse;
+            out[JOINTS + i] = rate;
+            twist[i + 1] = twist[i];
+            add_scaled(&mut twist[i + 1], &pose.joint_axis[i], rate);
+        }
+        for i in 0..6 {
+            let (arm, wheel) = (&self.pivot[ARMS + i - 6], &self.pivot[WHEELS + i - 6]);
+            let mut twist = twist[Tree::frame_of(i)];
+            let rate = (out[ARMS + i] - dot(&arm.row, &twist)) * arm.inverse;
+            out[ARMS + i] = rate;
+            add_scaled(&mut twist, &pose.arm[i].arm_axis, rate);
+            out[WHEELS + i] = (out[WHEELS + i] - dot(&wheel.row, &twist)) * wheel.inverse;
+        }
+        out
+    }
+}
+
+/// Takes a hinge out of a body's matrix; what is left is what its parent feels.
+#[inline]
+fn eliminate(body: &mut Spatial6, axis: &Spatial, stiffening: f64) -> Option<Pivot> {
+    let column = apply(body, axis);
+    let row = apply_transposed(body, axis);
+    let pivot = dot(axis, &column) + stiffening;
+    if pivot.is_nan() || pivot <= 0.0 {
+        return None;
+    }
+    let inverse = 1.0 / pivot;
+    take_rank_one(body, &column, &row, inverse);
+    Some(Pivot { column, row, inverse })
+}
+
+/// LU factors of the front frame's matrix in place, by columns, with the pivots inverted.
+fn factor_root(mut m: Spatial6) -> Option<Spatial6> {
+    for k in 0..6 {
+        let pivot = m[k][k];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / pivot;
+        m[k][k] = inverse;
+        for below in &mut m[k][k + 1..] {
+            *below *= inverse;
+        }
+        let lower = m[k];
+        for column in &mut m[k + 1..] {
+            let top = column[k];
+            for i in k + 1..6 {
+                column[i] -= lower[i] * top;
+            }
+        }
+    }
+    Some(m)
+}
+
+fn solve_root(lu: &Spatial6, x: &mut Spatial) {
+    for k in 0..6 {
+        for i in k + 1..6 {
+            x[i] -= lu[k][i] * x[k];
+        }
+    }
+    for k in (0..6).rev() {
+        x[k] *= lu[k][k];
+        for i in 0..k {
+            x[i] -= lu[k][i] * x[k];
+        }
+    }
+}

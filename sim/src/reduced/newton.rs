@@ -1,0 +1,297 @@
+//! The velocities at a step's end: Newton's method on the balance of impulses.
+//!
+//! Unknown are the 20 velocities; contacts, brakes and springs are functions of them, so the matrix
+//! keeps the tree's sparsity however many contacts there are (as in Castro et al., An Unconstrained
+//! Convex Formulation of Compliant Contact, 2023, but with Coulomb's cone itself instead of their
+//! convex one, which lifts a sliding contact by dt mu v). While no contact changes between open,
+//! sticking and sliding the balance is linear and one iteration solves it. It is solved to rounding,
+//! so that what comes out is as smooth in every parameter as the laws are.
+
+use super::contact::{Body, Contact};
+use super::factor::{Factors, Stiffening};
+use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
+use super::spatial::{Spatial, Spatial6, ZERO6, add, add6, at_point, dot, velocity_at, wrench_at};
+use super::tree::Tree;
+
+/// Residual at which the balance holds, as a velocity of the whole machine, m/s.
+const TOLERANCE_M_S: f64 = 1.0e-11;
+/// More iterations than any step of the tests takes.
+const ITERATIONS_MAX: usize = 60;
+/// From here on the matrix leaves out that sliding friction follows the normal force: slower, surer.
+const CAUTIOUS_FROM: usize = 20;
+/// Torque per creep of a holding brake, Nm s (assumed): as stiff as the contacts' friction.
+const BRAKE_CREEP_NMS: f64 = 1.0e8;
+/// Radius at which a front-frame torque counts as much as a force, m.
+const MACHINE_RADIUS_M: f64 = 2.0;
+/// What a hinge's torque moves at least, kg m²: half a wheel.
+const HINGE_INERTIA_KG_M2: f64 = 100.0;
+
+/// The dynamics of one step but for contacts and brakes.
+pub(super) struct Balance<'a> {
+    pub(super) pose: &'a Pose,
+    pub(super) inertias: &'a BodyInertias<Spatial6>,
+    /// Impulse that the velocities at the step's start lack, N s and Nm s.
+    pub(super) lack: Generalized,
+    /// Implicit springs and dampers of the hinges, times the step, kg m².
+    pub(super) hinge: Generalized,
+    /// Largest impulse of each wheel's brake, Nm s.
+    pub(super) brake: [f64; 6],
+    pub(super) dt_s: f64,
+    pub(super) mass_kg: f64,
+}
+
+/// How the iteration ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Convergence {
+    pub(super) iterations: usize,
+    pub(super) residual_m_s: f64,
+}
+
+impl Balance<'_> {
+    /// Moves `rate` from the step's start to its end. Contacts keep their final velocities.
+    pub(super) fn solve(&self, rate: &mut Generalized, contacts: &mut [Contact]) -> Convergence {
+        let mut smooth = self.lack;
+        self.set_velocities(rate, contacts);
+        let mut report = Convergence::default();
+        for iteration in 0..ITERATIONS_MAX {
+            let residual = self.residual(&smooth, rate, contacts);
+            report.residual_m_s = self.size_m_s(&residual);
+            report.iterations = iteration;
+            if report.residual_m_s < TOLERANCE_M_S {
+                break;
+            }
+            let Some((stiffening, step)) = self.direction(&residual, rate, contacts, iteration)
+            else {
+                break;
+            };
+            let change = self.smooth_change(&residual, &step, &stiffening, contacts);
+            let share = self.search(&smooth, &change, &step, rate, contacts);
+            for k in 0..FREEDOMS {
+                rate[k] += share * step[k];
+                smooth[k] += share * change[k];
+            }
+            for contact in contacts.iter_mut() {
+                contact.velocity += contact.step * share;
+            }
+        }
+        report
+    }
+
+    /// The Newton step, and the matrix it was made with. Leaves the contacts' share of it in them.
+    fn direction(
+        &self,
+        residual: &Generalized,
+        rate: &Generalized,
+        contacts: &mut [Contact],
+        iteration: usize,
+    ) -> Option<(Stiffening, Generalized)> {
+        let right = residual.map(|r| -r);
+        let mut coupled = iteration < CAUTIOUS_FROM;
+        loop {
+            let stiffening = self.stiffening(rate, contacts, coupled);
+            if let Some(factors) = Factors::new(self.pose, self.inertias, &stiffening) {
+                let step = factors.solve(self.pose, &right);
+                let descends = dot20(&step, residual) < 0.0;
+                if descends || !coupled {
+                    self.set_steps(&step, contacts);
+                    return Some((stiffening, step));
+                }
+            } else if !coupled {
+                return None;
+            }
+            coupled = false;
+        }
+    }
+
+    fn stiffening(
+        &self,
+        rate: &Generalized,
+        contacts: &mut [Contact],
+        coupled: bool,
+    ) -> Stiffening {
+        let mut out = Stiffening { hinge: self.hinge, wheel: [ZERO6; 6], frame: None };
+        for i in 0..6 {
+            out.hinge[WHEELS + i] += self.brake_slope(i, rate);
+        }
+        for contact in contacts {
+            contact.matrix = contact.slope(contact.velocity, coupled);
+            let matrix = at_point(&contact.matrix, contact.at);
+            match contact.body {
+                Body::Wheel(i) => add6(&mut out.wheel[i], &matrix),
+                Body::Frame(i) => add6(&mut out.frame.get_or_insert([ZERO6; 3])[i], &matrix),
+            }
+        }
+        out
+    }
+
+    /// What the step changes of the residual without contacts and brakes: the matrix times the step
+    /// is minus the residual, so only the contacts' part need be taken off again.
+    fn smooth_change(
+        &self,
+        residual: &Generalized,
+        step: &Generalized,
+        stiffening: &Stiffening,
+        contacts: &[Contact],
+    ) -> Generalized {
+        let mut change =
+            self.generalised(contacts.iter().map(|c| (c.body, wrench_at(c.matrix * c.step, c.at))));
+        for k in 0..FREEDOMS {
+            let brake = stiffening.hinge[k] - self.hinge[k];
+            change[k] = -residual[k] - change[k] - brake * step[k];
+        }
+        change
+    }
+
+    fn residual(
+        &self,
+        smooth: &Generalized,
+        rate: &Generalized,
+        contacts: &[Contact],
+    ) -> Generalized {
+        let made = self
+            .generalised(contacts.iter().map(|c| (c.body, wrench_at(c.impulse(c.velocity), c.at))));
+        let mut out = *smooth;
+        for k in 0..FREEDOMS {
+            out[k] -= made[k];
+        }
+        for i in 0..6 {
+            out[WHEELS + i] -= self.brake_impulse(i, rate[WHEELS + i]);
+        }
+        out
+    }
+
+    /// How far along `step` to go: all the way, or to where the residual no longer points onward.
+    /// In a convex problem that is the exact minimum along the line, and makes Newton's method safe.
+    fn search(
+        &self,
+        smooth: &Generalized,
+        change: &Generalized,
+        step: &Generalized,
+        rate: &Generalized,
+        contacts: &[Contact],
+    ) -> f64 {
+        let (constant, slope) = (dot20(step, smooth), dot20(step, change));
+        let onward = |share: f64| {
+            let contacts: f64 =
+                contacts.iter().map(|c| c.step.dot(c.impulse(c.velocity + c.step * share))).sum();
+            let brake = |i: usize| {
+                let k = WHEELS + i;
+                step[k] * self.brake_impulse(i, rate[k] + share * step[k])
+            };
+            let brakes: f64 = (0..6).map(brake).sum();
+            constant + share * slope - contacts - brakes
+        };
+        let start = onward(0.0);
+        let enough = 0.1 * start.abs();
+        let (mut low, mut at_low, mut high, mut at_high) = (0.0, start, 1.0, onward(1.0));
+        if at_high <= enough.max(f64::MIN_POSITIVE) || start >= 0.0 {
+            return 1.0;
+        }
+        // False position, Illinois variant.
+        for _ in 0..20 {
+            let share = (low * at_high - high * at_low) / (at_high - at_low);
+            let at = onward(share);
+            if at.abs() <= enough {
+                return share;
+            }
+            if at < 0.0 {
+                (low, at_low, at_high) = (share, at, at_high * 0.5);
+            } else {
+                (high, at_high, at_low) = (share, at, at_low * 0.5);
+            }
+        }
+        low.max(f64::EPSILON)
+    }
+
+    /// Wrenches on bodies as forces on the freedoms.
+    fn generalised(&self, wrenches: impl Iterator<Item = (Body, Spatial)>) -> Generalized {
+        let (mut on_wheel, mut on_frame) = ([[0.0; 6]; 6], [[0.0; 6]; 3]);
+        for (body, wrench) in wrenches {
+            match body {
+                Body::Wheel(i) => add(&mut on_wheel[i], &wrench),
+                Body::Frame(i) => add(&mut on_frame[i], &wrench),
+            }
+        }
+        generalised(self.pose, &on_wheel, on_frame)
+    }
+
+    fn set_velocities(&self, rate: &Generalized, contacts: &mut [Contact]) {
+        let twists = Twists::new(self.pose, rate);
+        for contact in contacts {
+            contact.velocity = velocity_at(twists.of(contact.body), contact.at);
+        }
+    }
+
+    fn set_steps(&self, step: &Generalized, contacts: &mut [Contact]) {
+        let twists = Twists::new(self.pose, step);
+        for contact in contacts {
+            contact.step = velocity_at(twists.of(contact.body), contact.at);
+        }
+    }
+
+    fn brake_impulse(&self, i: usize, rate_rad_s: f64) -> f64 {
+        -(BRAKE_CREEP_NMS * self.dt_s * rate_rad_s).clamp(-self.brake[i], self.brake[i])
+    }
+
+    fn brake_slope(&self, i: usize, rate: &Generalized) -> f64 {
+        let slope = BRAKE_CREEP_NMS * self.dt_s;
+        if slope * rate[WHEELS + i].abs() < self.brake[i] { slope } else { 0.0 }
+    }
+
+    fn size_m_s(&self, residual: &Generalized) -> f64 {
+        let torque: f64 = residual[..3].iter().map(|r| r * r).sum();
+        let force: f64 = residual[3..6].iter().map(|r| r * r).sum();
+        let hinges: f64 = residual[6..].iter().map(|r| r * r).sum();
+        let radius = MACHINE_RADIUS_M * MACHINE_RADIUS_M;
+        let energy = (force + torque / radius) / self.mass_kg + hinges / HINGE_INERTIA_KG_M2;
+        (energy / self.mass_kg).sqrt()
+    }
+}
+
+/// Wrenches on wheels and frames as forces on the freedoms.
+pub(super) fn generalised(
+    pose: &Pose,
+    on_wheel: &[Spatial; 6],
+    mut on_frame: [Spatial; 3],
+) -> Generalized {
+    let mut out = [0.0; FREEDOMS];
+    for (i, wrench) in on_wheel.iter().enumerate() {
+        out[WHEELS + i] = dot(&pose.arm[i].wheel_axis, wrench);
+        out[ARMS + i] = dot(&pose.arm[i].arm_axis, wrench);
+        add(&mut on_frame[Tree::frame_of(i)], wrench);
+    }
+    for i in (0..2).rev() {
+        let behind = on_frame[i + 1];
+        out[JOINTS + i] = dot(&pose.joint_axis[i], &behind);
+        add(&mut on_frame[i], &behind);
+    }
+    out[..6].copy_from_slice(&on_frame[0]);
+    out
+}
+
+struct Twists {
+    frame: [Spatial; 3],
+    wheel: [Spatial; 6],
+}
+
+impl Twists {
+    fn new(pose: &Pose, rate: &Generalized) -> Self {
+        let frame = pose.frame_twists(rate);
+        let wheel = core::array::from_fn(|i| {
+            let arm = pose.arm_twist(i, &frame[Tree::frame_of(i)], rate);
+            pose.wheel_twist(i, &arm, rate)
+        });
+        Self { frame, wheel }
+    }
+
+    const fn of(&self, body: Body) -> &Spatial {
+        match body {
+            Body::Wheel(i) => &self.wheel[i],
+            Body::Frame(i) => &self.frame[i],
+        }
+    }
+}
+
+fn dot20(a: &Generalized, b: &Generalized) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

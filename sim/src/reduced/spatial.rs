@@ -1,0 +1,173 @@
+//! Spatial vectors and matrices: six numbers a motion or a force, angular part first.
+//!
+//! All are taken about one point fixed in the world and in world axes (Featherstone, Rigid Body
+//! Dynamics Algorithms, chapter 2), so that a tree is walked without turning or shifting any.
+
+use glam::{DMat3, DVec3};
+
+/// A twist (rad/s, m/s) or a wrench (Nm, N), angular part first.
+pub(super) type Spatial = [f64; 6];
+/// A spatial inertia or stiffness, by columns.
+pub(super) type Spatial6 = [Spatial; 6];
+
+pub(super) const ZERO: Spatial = [0.0; 6];
+pub(super) const ZERO6: Spatial6 = [ZERO; 6];
+
+#[inline]
+pub(super) const fn join(angular: DVec3, linear: DVec3) -> Spatial {
+    [angular.x, angular.y, angular.z, linear.x, linear.y, linear.z]
+}
+
+#[inline]
+pub(super) const fn angular(v: &Spatial) -> DVec3 {
+    DVec3::new(v[0], v[1], v[2])
+}
+
+#[inline]
+pub(super) const fn linear(v: &Spatial) -> DVec3 {
+    DVec3::new(v[3], v[4], v[5])
+}
+
+/// The twist of a turn at 1 rad/s about `axis` through `at`.
+#[inline]
+pub(super) fn turn_about(axis: DVec3, at: DVec3) -> Spatial {
+    join(axis, at.cross(axis))
+}
+
+/// The wrench of `force` that acts at `at`.
+#[inline]
+pub(super) fn wrench_at(force: DVec3, at: DVec3) -> Spatial {
+    join(at.cross(force), force)
+}
+
+/// Velocity of the body's point at `at`.
+#[inline]
+pub(super) fn velocity_at(twist: &Spatial, at: DVec3) -> DVec3 {
+    linear(twist) + angular(twist).cross(at)
+}
+
+#[inline]
+pub(super) fn dot(a: &Spatial, b: &Spatial) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+}
+
+/// `a += b * by`.
+#[inline]
+pub(super) fn add_scaled(a: &mut Spatial, b: &Spatial, by: f64) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += b * by;
+    }
+}
+
+#[inline]
+pub(super) fn add(a: &mut Spatial, b: &Spatial) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += b;
+    }
+}
+
+#[inline]
+pub(super) fn add6(a: &mut Spatial6, b: &Spatial6) {
+    for (a, b) in a.iter_mut().zip(b) {
+        add(a, b);
+    }
+}
+
+/// `m v`.
+#[inline]
+pub(super) fn apply(m: &Spatial6, v: &Spatial) -> Spatial {
+    let mut out = ZERO;
+    for (column, v) in m.iter().zip(v) {
+        add_scaled(&mut out, column, *v);
+    }
+    out
+}
+
+/// `m^T v`.
+#[inline]
+pub(super) fn apply_transposed(m: &Spatial6, v: &Spatial) -> Spatial {
+    let mut out = ZERO;
+    for (out, column) in out.iter_mut().zip(m) {
+        *out = dot(column, v);
+    }
+    out
+}
+
+/// `m -= u w^T / d`.
+#[inline]
+pub(super) fn take_rank_one(m: &mut Spatial6, u: &Spatial, w: &Spatial, d_inverse: f64) {
+    for (column, w) in m.iter_mut().zip(w) {
+        add_scaled(column, u, -w * d_inverse);
+    }
+}
+
+/// The rate of change of a twist that moves with `v`: v x s.
+#[inline]
+pub(super) fn cross_motion(v: &Spatial, s: &Spatial) -> Spatial {
+    let (w, u) = (angular(v), linear(v));
+    let (a, b) = (angular(s), linear(s));
+    join(w.cross(a), w.cross(b) + u.cross(a))
+}
+
+/// Inertia about the common point of `mass_kg` at `com`, with `about_com` in world axes.
+pub(super) fn rigid(mass_kg: f64, com: DVec3, about_com: &DMat3) -> Spatial6 {
+    let (c, m) = (com, mass_kg);
+    let square = c.length_squared();
+    let mut out = ZERO6;
+    for j in 0..3 {
+        let mut column = about_com.col(j) - c * (m * c[j]);
+        column[j] += m * square;
+        let unit = DVec3::AXES[j];
+        out[j] = join(column, unit.cross(c) * m);
+        out[3 + j] = join(c.cross(unit) * m, unit * m);
+    }
+    out
+}
+
+/// A 3 x 3 matrix on the velocity of the point `at`, as a spatial matrix: X^T g X.
+#[inline]
+pub(super) fn at_point(g: &DMat3, at: DVec3) -> Spatial6 {
+    let mut out = ZERO6;
+    for j in 0..3 {
+        let unit = DVec3::AXES[j];
+        out[j] = wrench_at(*g * unit.cross(at), at);
+        out[3 + j] = wrench_at(g.col(j), at);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rigid_inertia_gives_momentum_and_energy() {
+        let com = DVec3::new(0.3, -1.2, 0.8);
+        let about = DMat3::from_diagonal(DVec3::new(2.0, 3.0, 5.0));
+        let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
+        let momentum = apply(&rigid(7.0, com, &about), &twist);
+        let p = velocity_at(&twist, com) * 7.0;
+        let l = about * angular(&twist) + com.cross(p);
+        for (got, want) in momentum.iter().zip(join(l, p)) {
+            assert!((got - want).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_point_matrix_acts_on_the_velocity_of_its_point() {
+        let at = DVec3::new(0.3, -1.2, 0.8);
+        let g = DMat3::from_cols_array(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
+        let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
+        let got = apply(&at_point(&g, at), &twist);
+        let want = wrench_at(g * velocity_at(&twist, at), at);
+        for (got, want) in got.iter().zip(want) {
+            assert!((got - want).abs() < 1e-12);
+        }
+        let m = at_point(&g, at);
+        let other = [0.1, 0.7, -0.3, 0.2, -0.6, 0.5];
+        assert!(
+            (dot(&apply(&m, &twist), &other) - dot(&twist, &apply_transposed(&m, &other))).abs()
+                < 1e-12
+        );
+    }
+}

@@ -5,7 +5,7 @@
 
 use xt28_machine::PerWheel;
 
-use crate::{Parts, Terrain};
+use crate::{Parts, Terrain, Tilt};
 
 /// A solver of the vehicle's rigid bodies. A clone is a snapshot: it goes on bit for bit alike.
 pub trait Bodies: Clone {
@@ -63,7 +63,8 @@ pub struct Motion {
     pub joint: [HingeMotion; 2],
     /// Wheels about their axles, against their arms, rad/s; forward > 0.
     pub wheel_rate_rad_s: PerWheel<f64>,
-    /// Origin of the front frame in the world, m.
+    /// Origin of the front frame in the world, m. A solver's world has the ground's axes: where the
+    /// ground leans as a whole, gravity leans ([`Parts::tilt`]).
     pub position_m: [f64; 3],
     /// The front frame's axes x (forward), y (left), z (up), each in the world.
     pub axes: [[f64; 3]; 3],
@@ -75,6 +76,21 @@ pub struct Motion {
     pub ground_force_n: PerWheel<f64>,
     /// Force of the ground on anything but the wheels, mean of the last step, N.
     pub chassis_force_n: f64,
+}
+
+impl Motion {
+    /// The same motion, seen from the level world instead of from ground that leans by `tilt`.
+    /// Forces stay what they are: square to the ground.
+    #[must_use]
+    pub fn in_world(&self, tilt: &Tilt) -> Self {
+        Self {
+            position_m: tilt.to_world(self.position_m),
+            axes: self.axes.map(|axis| tilt.to_world(axis)),
+            velocity_m_s: tilt.to_world(self.velocity_m_s),
+            rate_rad_s: tilt.to_world(self.rate_rad_s),
+            ..*self
+        }
+    }
 }
 
 /// What acts on the rigid bodies over a step, beside gravity and the ground.

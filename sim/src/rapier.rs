@@ -2,6 +2,8 @@
 
 mod bodies;
 mod ground_contact;
+mod hull_watch;
 mod insert;
+mod shapes;
 
 pub use bodies::RapierBodies;

@@ -2,11 +2,14 @@
 
 use core::time::Duration;
 
-use xt28_machine::{Machine, PerWheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 
 use crate::actuators::Actuators;
 use crate::bodies::{Bodies, Motion};
-use crate::{Actuation, Effects, Parts, Plant, RapierBodies, STEP, Terrain, VehicleState};
+use crate::{Actuation, Effects, Parts, Plant, RapierBodies, STEP, Terrain, Tilt, VehicleState};
+
+/// Gravity in the world, m/s².
+const DOWN_M_S2: [f64; 3] = [0.0, 0.0, -GRAVITY_M_S2];
 
 /// A plant made of blocks and of a solver `B`. A clone is a snapshot: stepped alike, it goes on bit
 /// for bit like the original. The terrain is shared, not copied.
@@ -15,7 +18,7 @@ pub struct Vehicle<B = RapierBodies> {
     bodies: B,
     actuators: Actuators,
     front_com_m: [f64; 3],
-    gravity_m_s2: [f64; 3],
+    tilt: Option<Tilt>,
     antenna_m: [f64; 3],
     step_s: f64,
     motion: Motion,
@@ -51,7 +54,7 @@ impl<B: Bodies> Vehicle<B> {
             bodies,
             actuators: Actuators::new(machine, effects, stroke_m, step_s),
             front_com_m: parts.frames[0].com_m,
-            gravity_m_s2: parts.gravity_m_s2,
+            tilt: parts.tilt,
             antenna_m: {
                 let ([x, y, z], lever) =
                     (machine.sensors.gnss_antenna_m, effects.sensors.gnss_lever_arm);
@@ -65,8 +68,19 @@ impl<B: Bodies> Vehicle<B> {
     }
 
     /// Writes the state that the motion shows; `before_m_s` was the front frame's velocity a step ago.
+    ///
+    /// Solvers move the machine in the ground's axes; what is true of it is said in the world's.
     fn observe(&mut self, before_m_s: [f64; 3]) {
-        let (m, s) = (&self.motion, &mut self.state);
+        let (level, level_before_m_s);
+        let (m, before_m_s) = match self.tilt {
+            None => (&self.motion, before_m_s),
+            Some(tilt) => {
+                level = self.motion.in_world(&tilt);
+                level_before_m_s = tilt.to_world(before_m_s);
+                (&level, level_before_m_s)
+            }
+        };
+        let s = &mut self.state;
         self.actuators.observe(m, s);
         s.joint_rad = m.joint.map(|joint| joint.angle_rad);
         s.joint_rate_rad_s = m.joint.map(|joint| joint.rate_rad_s);
@@ -81,7 +95,7 @@ impl<B: Bodies> Vehicle<B> {
         let into_frame = |v: [f64; 3]| m.axes.map(|axis| dot(axis, v));
         s.front_rate_rad_s = into_frame(m.rate_rad_s);
         s.front_specific_force_m_s2 = into_frame(core::array::from_fn(|i| {
-            (m.velocity_m_s[i] - before_m_s[i]) / self.step_s - self.gravity_m_s2[i]
+            (m.velocity_m_s[i] - before_m_s[i]) / self.step_s - DOWN_M_S2[i]
         }));
         let from_frame =
             |v: [f64; 3]| core::array::from_fn(|i| v[0] * x[i] + v[1] * y[i] + v[2] * z[i]);

@@ -6,8 +6,9 @@
 use rapier3d::prelude::*;
 use xt28_machine::{PerWheel, Wheel};
 
-use super::ground_contact::Ground;
-use super::insert::{insert_arm, insert_frames, new_world};
+use super::hull_watch::HullWatch;
+use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
+use super::shapes::Ground;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Parts, REFERENCE_STROKE_M, Terrain};
 
@@ -21,6 +22,10 @@ pub struct RapierBodies {
     arms: PerWheel<RigidBodyHandle>,
     wheels: PerWheel<RigidBodyHandle>,
     wheel_colliders: PerWheel<ColliderHandle>,
+    hulls: [HullWatch; 3],
+    terrain: Terrain,
+    /// The front frame's centre of mass, which is its body's origin, among the machine's axes.
+    front_com: Vector,
     ground: ColliderHandle,
     joints: [Hinge; 2],
     arm_hinges: PerWheel<Hinge>,
@@ -28,6 +33,7 @@ pub struct RapierBodies {
     /// Sense in which each arm extends about +y.
     extends: PerWheel<f64>,
     ground_force_n: PerWheel<f64>,
+    chassis_force_n: f64,
 }
 
 /// Where a hinge's angle is among the multibody's links and velocities.
@@ -55,22 +61,26 @@ impl Bodies for RapierBodies {
         let mut wheels = arms;
         let mut wheel_colliders = PerWheel::splat(ColliderHandle::invalid());
         for wheel in Wheel::ALL {
-            let frame = frames[wheel.axle() as usize];
             (arms[wheel], wheels[wheel], wheel_colliders[wheel]) =
-                insert_arm(parts, &mut world, frame, wheel);
+                insert_arm(parts, &mut world, &frames, wheel);
         }
+        let hulls = core::array::from_fn(|i| HullWatch::new(&mut world, frames[i], parts, i));
         let mut bodies = Self {
             world,
             frames,
             arms,
             wheels,
             wheel_colliders,
+            hulls,
+            terrain: terrain.clone(),
+            front_com: vector(origin_m(parts, 0)),
             ground,
             joints: Default::default(),
             arm_hinges: PerWheel::splat(Hinge::default()),
             wheel_hinges: PerWheel::splat(Hinge::default()),
             extends: PerWheel::from_fn(|wheel| parts.arms[wheel].extends),
             ground_force_n: PerWheel::splat(0.0),
+            chassis_force_n: 0.0,
         };
         bodies.free_root();
         bodies.index_hinges();
@@ -89,12 +99,12 @@ impl Bodies for RapierBodies {
             // bends left.
             joint: self.joints.map(|hinge| signed(self.hinge_motion(hinge), -1.0)),
             wheel_rate_rad_s: self.wheel_hinges.map(|hinge| self.hinge_motion(hinge).rate_rad_s),
-            position_m: wide(body.translation()),
+            position_m: wide(*body.position() * -self.front_com),
             axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
             velocity_m_s: wide(body.linvel()),
             rate_rad_s: wide(body.angvel()),
             ground_force_n: self.ground_force_n,
-            chassis_force_n: 0.0,
+            chassis_force_n: self.chassis_force_n,
         }
     }
 
@@ -102,9 +112,18 @@ impl Bodies for RapierBodies {
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
         self.set_springs(loads);
         self.set_wheel_torques(loads);
+        for hull in &mut self.hulls {
+            hull.look(&mut self.world, &self.terrain, dt_s);
+        }
         self.world.integration_parameters.dt = dt_s as Real;
         self.world.step();
-        self.ground_force_n = self.wheel_colliders.map(|wheel| self.force_between_n(wheel, dt_s));
+        let up = |force_n: [f64; 3]| force_n[2];
+        self.ground_force_n = self.wheel_colliders.map(|wheel| up(self.ground_push_n(wheel, dt_s)));
+        let push_n = |hull: &HullWatch| {
+            let push_n = self.ground_push_n(hull.collider(), dt_s);
+            push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
+        };
+        self.chassis_force_n = self.hulls.iter().map(push_n).sum();
     }
 }
 
@@ -123,7 +142,7 @@ impl Clone for RapierBodies {
             multibody_joints: self.world.multibody_joints.clone(),
             ..PhysicsWorld::new()
         };
-        Self { world, ..*self }
+        Self { world, hulls: self.hulls.clone(), terrain: self.terrain.clone(), ..*self }
     }
 }
 
@@ -157,19 +176,21 @@ impl RapierBodies {
         }
     }
 
-    /// Vertical force of the ground on a part over the last step of `dt_s` s, N.
-    fn force_between_n(&self, collider: ColliderHandle, dt_s: f64) -> f64 {
+    /// What the ground's pressure pushed a part with over the last step of `dt_s` s, N.
+    fn ground_push_n(&self, collider: ColliderHandle, dt_s: f64) -> [f64; 3] {
         let Some(pair) = self.world.narrow_phase.contact_pair(self.ground, collider) else {
-            return 0.0;
+            return [0.0; 3];
         };
-        let up = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
-        let impulse: f64 = pair
-            .manifolds()
-            .iter()
-            .flat_map(|m| m.points.iter().map(move |p| (m.data.normal.z, p.data.impulse)))
-            .map(|(normal_z, impulse)| f64::from(normal_z) * up * f64::from(impulse))
-            .sum();
-        impulse / dt_s
+        let away = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
+        let mut push_n = [0.0; 3];
+        for manifold in pair.manifolds() {
+            let normal = manifold.data.normal.to_array().map(f64::from);
+            for point in &manifold.points {
+                let force_n = away * f64::from(point.data.impulse) / dt_s;
+                push_n.iter_mut().zip(normal).for_each(|(push, n)| *push += n * force_n);
+            }
+        }
+        push_n
     }
 
     fn hinge_motion(&self, hinge: Hinge) -> HingeMotion {

@@ -1,104 +1,33 @@
-//! Wheel against ground, for the engine: the ground as a shape, and a dispatcher that knows the pair.
+//! What meets the ground, for the engine: a dispatcher that knows wheel and hull against [`Ground`].
 
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real, Vector};
-use rapier3d::parry::bounding_volume::{Aabb, BoundingSphere};
-use rapier3d::parry::mass_properties::MassProperties;
 use rapier3d::parry::query::details::{NormalConstraints, ShapeCastOptions};
 use rapier3d::parry::query::{
     ClosestPoints, Contact, ContactManifold, ContactManifoldsWorkspace, DefaultQueryDispatcher,
-    NonlinearRigidMotion, PersistentQueryDispatcher, PointProjection, PointQuery, QueryDispatcher,
-    Ray, RayCast, RayIntersection, ShapeCastHit, ShapeDistance, ShapeIntersection, TrackedContact,
-    Unsupported,
+    NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance,
+    ShapeIntersection, TrackedContact, Unsupported,
 };
-use rapier3d::parry::shape::{Ball, FeatureId, PackedFeatureId, Shape, ShapeType, TypedShape};
+use rapier3d::parry::shape::{PackedFeatureId, Shape};
 
 use xt28_terrain::Nearest;
 
-use crate::Terrain;
+use super::shapes::{Ground, Hull};
 
-/// The ground as a shape; only balls meet it.
-#[derive(Clone, Debug)]
-pub(crate) struct Ground(pub(crate) Terrain);
-
-impl PointQuery for Ground {
-    fn project_local_point(&self, pt: Vector, _solid: bool) -> PointProjection {
-        #[allow(clippy::cast_possible_truncation)]
-        let height = self.0.height_m(f64::from(pt.x), f64::from(pt.y)) as Real;
-        PointProjection::new(pt.z < height, Vector::new(pt.x, pt.y, height))
-    }
-
-    fn project_local_point_and_get_feature(&self, pt: Vector) -> (PointProjection, FeatureId) {
-        (self.project_local_point(pt, true), FeatureId::Unknown)
-    }
-}
-
-impl RayCast for Ground {
-    /// Nothing in the plant casts rays at the ground; sensors read heights instead.
-    fn cast_local_ray_and_get_normal(
-        &self,
-        _ray: &Ray,
-        _max_time_of_impact: Real,
-        _solid: bool,
-    ) -> Option<RayIntersection> {
-        None
-    }
-}
-
-impl Shape for Ground {
-    fn compute_local_aabb(&self) -> Aabb {
-        // As high as wide: a slope without end rises out of any lower box.
-        let half = Vector::splat(1.0e4);
-        Aabb::new(-half, half)
-    }
-
-    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
-        self.compute_local_aabb().bounding_sphere()
-    }
-
-    fn clone_dyn(&self) -> Box<dyn Shape> {
-        Box::new(self.clone())
-    }
-
-    fn scale_dyn(&self, _scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
-        None
-    }
-
-    fn mass_properties(&self, _density: Real) -> MassProperties {
-        MassProperties::default()
-    }
-
-    fn shape_type(&self) -> ShapeType {
-        ShapeType::Custom
-    }
-
-    fn as_typed_shape(&self) -> TypedShape<'_> {
-        TypedShape::Custom(self)
-    }
-
-    fn ccd_thickness(&self) -> Real {
-        0.0
-    }
-
-    fn ccd_angular_thickness(&self) -> Real {
-        core::f32::consts::PI
-    }
-}
-
-/// Ball against [`Ground`] by local minima; every other pair by the engine's own dispatcher.
+/// Balls and hulls against [`Ground`] by local minima; every other pair by the engine's own dispatcher.
 pub(crate) struct GroundDispatcher;
 
 type Manifold = ContactManifold<ContactManifoldData, ContactData>;
 
-/// The ground and the ball of a pair, and whether the ball came first.
-fn ground_and_ball<'a>(
+/// The ground and what meets it, and whether that came first.
+fn ground_and_other<'a>(
     g1: &'a dyn Shape,
     g2: &'a dyn Shape,
-) -> Option<(&'a Ground, &'a Ball, bool)> {
-    if let (Some(ground), Some(ball)) = (g1.as_shape::<Ground>(), g2.as_ball()) {
-        return Some((ground, ball, false));
+) -> Option<(&'a Ground, &'a dyn Shape, bool)> {
+    if let Some(ground) = g1.as_shape::<Ground>() {
+        return Some((ground, g2, false));
     }
-    Some((g2.as_shape::<Ground>()?, g1.as_ball()?, true))
+    Some((g2.as_shape::<Ground>()?, g1, true))
 }
 
 impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for GroundDispatcher {
@@ -111,19 +40,24 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for GroundDispa
         manifolds: &mut Vec<Manifold>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let Some((ground, ball, flipped)) = ground_and_ball(g1, g2) else {
-            return DefaultQueryDispatcher
-                .contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace);
-        };
-        let ball_pose = if flipped { pos12.inverse() } else { *pos12 };
-        let reach_m = ball.radius + prediction;
-        let centre_m = ball_pose.translation.to_array().map(f64::from);
-        let minima = ground.0.nearest(centre_m, f64::from(reach_m));
-        manifolds.resize_with(minima.points().len(), Manifold::new);
-        for (manifold, nearest) in manifolds.iter_mut().zip(minima.points()) {
-            write_contact(manifold, nearest, &ball_pose, ball.radius, flipped);
+        let met = ground_and_other(g1, g2);
+        if let Some((ground, other, flipped)) = met {
+            let pose = if flipped { pos12.inverse() } else { *pos12 };
+            if let Some(ball) = other.as_ball() {
+                let ball = BallOf { pose, centre: Vector::ZERO, radius: ball.radius, flipped };
+                let minima = ball.minima(ground, prediction);
+                manifolds.resize_with(minima.points().len(), Manifold::new);
+                for (manifold, nearest) in manifolds.iter_mut().zip(minima.points()) {
+                    ball.write_contact(manifold, nearest);
+                }
+                return Ok(());
+            }
+            if let Some(hull) = other.as_shape::<Hull>() {
+                hull_contacts(ground, hull, &pose, flipped, prediction, manifolds);
+                return Ok(());
+            }
         }
-        Ok(())
+        DefaultQueryDispatcher.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
     }
 
     fn contact_manifold_convex_convex(
@@ -148,37 +82,74 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for GroundDispa
     }
 }
 
-/// Writes one contact; a point that was there before keeps its warm-start impulses.
-fn write_contact(
-    manifold: &mut Manifold,
-    nearest: &Nearest,
-    ball_pose: &Pose,
-    radius: Real,
+/// Where each ball of a hull touches deepest. A ball that touched before keeps its manifold, and
+/// with it the impulses that the solver starts from.
+fn hull_contacts(
+    ground: &Ground,
+    hull: &Hull,
+    pose: &Pose,
     flipped: bool,
+    prediction: Real,
+    manifolds: &mut Vec<Manifold>,
 ) {
-    #[allow(clippy::cast_possible_truncation)]
-    let (point, distance) =
-        (Vector::from(nearest.point_m.map(|m| m as Real)), nearest.distance_m as Real);
-    let away = ball_pose.translation - point;
-    let sign = if distance < 0.0 { -1.0 } else { 1.0 };
-    let normal = (away * sign).normalize_or(Vector::Z);
-    let ball_normal = ball_pose.rotation.inverse() * -normal;
-    let contact = TrackedContact::flipped(
-        point,
-        ball_normal * radius,
-        PackedFeatureId::face(0),
-        PackedFeatureId::face(0),
-        distance - radius,
-        flipped,
-    );
-    if manifold.points.len() == 1 {
-        manifold.points[0].copy_geometry_from(contact);
-    } else {
-        manifold.points.clear();
-        manifold.points.push(contact);
+    let mut before = core::mem::take(manifolds);
+    for (i, &(centre, radius)) in (0..).zip(hull.balls()) {
+        let ball = BallOf { pose: *pose, centre, radius, flipped };
+        let minima = ball.minima(ground, prediction);
+        let by_distance = |a: &&Nearest, b: &&Nearest| a.distance_m.total_cmp(&b.distance_m);
+        if let Some(nearest) = minima.points().iter().min_by(by_distance) {
+            let mut manifold = match before.iter().position(|m| m.subshape2 == i) {
+                Some(at) => before.swap_remove(at),
+                None => Manifold { subshape2: i, ..Manifold::new() },
+            };
+            ball.write_contact(&mut manifold, nearest);
+            manifolds.push(manifold);
+        }
     }
-    (manifold.local_n1, manifold.local_n2) =
-        if flipped { (ball_normal, normal) } else { (normal, ball_normal) };
+}
+
+/// A ball that belongs to a shape at `pose`.
+struct BallOf {
+    pose: Pose,
+    /// In the shape's axes.
+    centre: Vector,
+    radius: Real,
+    /// Whether the engine names this shape before the ground.
+    flipped: bool,
+}
+
+impl BallOf {
+    fn minima(&self, ground: &Ground, prediction: Real) -> xt28_terrain::Minima {
+        let centre_m = (self.pose * self.centre).to_array().map(f64::from);
+        ground.0.nearest(centre_m, f64::from(self.radius + prediction))
+    }
+
+    /// Writes one contact; a point that was there before keeps its warm-start impulses.
+    fn write_contact(&self, manifold: &mut Manifold, nearest: &Nearest) {
+        #[allow(clippy::cast_possible_truncation)]
+        let (point, distance) =
+            (Vector::from(nearest.point_m.map(|m| m as Real)), nearest.distance_m as Real);
+        let away = self.pose * self.centre - point;
+        let sign = if distance < 0.0 { -1.0 } else { 1.0 };
+        let normal = (away * sign).normalize_or(Vector::Z);
+        let own_normal = self.pose.rotation.inverse() * -normal;
+        let contact = TrackedContact::flipped(
+            point,
+            self.centre + own_normal * self.radius,
+            PackedFeatureId::face(0),
+            PackedFeatureId::face(0),
+            distance - self.radius,
+            self.flipped,
+        );
+        if manifold.points.len() == 1 {
+            manifold.points[0].copy_geometry_from(contact);
+        } else {
+            manifold.points.clear();
+            manifold.points.push(contact);
+        }
+        (manifold.local_n1, manifold.local_n2) =
+            if self.flipped { (own_normal, normal) } else { (normal, own_normal) };
+    }
 }
 
 impl QueryDispatcher for GroundDispatcher {

@@ -4,12 +4,19 @@ use rapier3d::prelude::*;
 use xt28_machine::Wheel;
 
 use super::ground_contact::GroundDispatcher;
-use crate::parts::{ArmPart, Part, Parts, TyrePart};
+use super::shapes::Hull;
+use crate::parts::{ArmPart, HullBall, Part, Parts, TyrePart};
 
 /// What a wheel's contact moves, kg: the wheel, its share of the arm, and what the cylinder's lock
 /// resists within a step. The engine states a contact's spring as a frequency of this mass; a test
 /// holds the sag that comes of it to the tyre's stiffness.
 const CONTACT_MASS_KG: f64 = 770.0;
+
+/// Coefficient of friction of steel on ground (assumed).
+const HULL_FRICTION: Real = 0.5;
+/// Wheels and hulls meet the ground only, never one another.
+const ON_GROUND: InteractionGroups =
+    InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);
 
 #[allow(clippy::cast_possible_truncation)]
 pub(super) fn vector(v: [f64; 3]) -> Vector {
@@ -28,6 +35,7 @@ pub(super) fn new_world(parts: &Parts) -> PhysicsWorld {
     p.friction_in_bias_pass = true;
     p.max_ccd_substeps = 0;
     p.contact_recycling = false;
+    p.contact_clustering = false;
     p.static_contact_softness = tyre(&parts.tyres[Wheel::Fr]);
     p.normalized_allowed_linear_error = 0.0;
     world
@@ -41,46 +49,73 @@ fn tyre(t: &TyrePart) -> SpringCoefficients<Real> {
     SpringCoefficients::new((rad_s / core::f64::consts::TAU) as Real, damping_ratio as Real)
 }
 
-/// Frames share the machine's axes: each body's origin is the machine file's origin.
+/// Where a frame's body has its origin among the machine's axes.
+///
+/// The engine carries the origin of a multibody's root along with the velocity of its centre of
+/// mass. So the front frame's origin has to lie there, or the whole machine would slip sideways
+/// whenever it pitches or rolls; the frames behind keep the machine file's origin.
+pub(super) fn origin_m(parts: &Parts, frame: usize) -> [f64; 3] {
+    if frame == 0 { parts.frames[0].com_m } else { [0.0; 3] }
+}
+
+/// A point of a frame, given in the machine's axes, in those of its body.
+fn on_frame(parts: &Parts, frame: usize, point_m: [f64; 3]) -> Vector {
+    let origin_m = origin_m(parts, frame);
+    vector(core::array::from_fn(|i| point_m[i] - origin_m[i]))
+}
+
+/// The frames, hinged to one another.
 pub(super) fn insert_frames(parts: &Parts, world: &mut PhysicsWorld) -> [RigidBodyHandle; 3] {
-    let frames = parts.frames.map(|frame| world.bodies.insert(body(&frame)));
-    for (i, anchor) in parts.joint_m.into_iter().enumerate() {
+    let frames: [_; 3] = core::array::from_fn(|i| {
+        let origin_m = origin_m(parts, i);
+        let mut frame = parts.frames[i];
+        frame.com_m = core::array::from_fn(|k| frame.com_m[k] - origin_m[k]);
+        world.bodies.insert(body(&frame).translation(vector(origin_m)))
+    });
+    for (i, anchor_m) in parts.joint_m.into_iter().enumerate() {
         let joint = RevoluteJointBuilder::new(Vector::Z)
-            .local_anchor1(vector(anchor))
-            .local_anchor2(vector(anchor));
+            .local_anchor1(on_frame(parts, i, anchor_m))
+            .local_anchor2(on_frame(parts, i + 1, anchor_m));
         world.insert_multibody_joint(frames[i], frames[i + 1], joint);
     }
     frames
+}
+
+/// What of a frame can touch the ground, without mass.
+pub(super) fn insert_hull(
+    world: &mut PhysicsWorld,
+    frame: RigidBodyHandle,
+    balls: &[HullBall],
+) -> ColliderHandle {
+    let hull = ColliderBuilder::new(SharedShape::new(Hull::new(balls)))
+        .density(0.0)
+        .friction(HULL_FRICTION)
+        .friction_combine_rule(CoefficientCombineRule::Min)
+        .collision_groups(ON_GROUND);
+    world.insert_collider(hull, Some(frame))
 }
 
 /// An arm with its wheel: the arm's origin is its pivot, the wheel's its centre.
 pub(super) fn insert_arm(
     parts: &Parts,
     world: &mut PhysicsWorld,
-    frame: RigidBodyHandle,
+    frames: &[RigidBodyHandle; 3],
     wheel: Wheel,
 ) -> (RigidBodyHandle, RigidBodyHandle, ColliderHandle) {
     let ArmPart { body: arm, pivot_m, to_wheel_m, .. } = &parts.arms[wheel];
-    let axle = |parent: [f64; 3], child: [f64; 3]| {
-        RevoluteJointBuilder::new(Vector::Y)
-            .local_anchor1(vector(parent))
-            .local_anchor2(vector(child))
-    };
+    // Arms and wheels have their origin in their own hinge.
+    let axle = |on_parent: Vector| RevoluteJointBuilder::new(Vector::Y).local_anchor1(on_parent);
+    let frame = wheel.axle() as usize;
     let arm = world.bodies.insert(body(arm));
-    world.insert_multibody_joint(frame, arm, axle(*pivot_m, [0.0; 3]));
+    world.insert_multibody_joint(frames[frame], arm, axle(on_frame(parts, frame, *pivot_m)));
     let rim = world.bodies.insert(body(&parts.wheel));
-    world.insert_multibody_joint(arm, rim, axle(*to_wheel_m, [0.0; 3]));
+    world.insert_multibody_joint(arm, rim, axle(vector(*to_wheel_m)));
     #[allow(clippy::cast_possible_truncation)]
     let ball = ColliderBuilder::ball(parts.radius_m as Real)
         .density(0.0)
         .friction(parts.tyres[wheel].friction as Real)
         .friction_combine_rule(CoefficientCombineRule::Min)
-        // Wheels meet the ground only, never one another.
-        .collision_groups(InteractionGroups::new(
-            Group::GROUP_2,
-            Group::GROUP_1,
-            InteractionTestMode::And,
-        ));
+        .collision_groups(ON_GROUND);
     let collider = world.insert_collider(ball, Some(rim));
     (arm, rim, collider)
 }

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use xt28_machine::MachineError;
+use xt28_sim::TerrainError;
+
 /// Why a scenario was refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ScenarioError {
@@ -45,6 +48,14 @@ pub enum ScenarioError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// The terrain that it names was refused.
+    #[error("{terrain_at}: {source}")]
+    Terrain {
+        /// File and line of the terrain.
+        terrain_at: String,
+        /// What is wrong with it.
+        source: TerrainError,
+    },
     /// No built-in scenario has this name.
     #[error("no scenario `{name}`{}; the built-in ones are {known}, or give a file ending in .toml", suggest(.nearest))]
     Unknown {
@@ -55,6 +66,17 @@ pub enum ScenarioError {
         /// All built-in names.
         known: String,
     },
+}
+
+/// Why a scenario could not be made ready to run.
+#[derive(Debug, thiserror::Error)]
+pub enum SetupError {
+    /// The machine file is refused.
+    #[error(transparent)]
+    Machine(#[from] MachineError),
+    /// A height map of the terrain is refused.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
 }
 
 impl ScenarioError {

@@ -66,7 +66,7 @@ impl<W: Write> Lockstep<W> {
     /// # Errors
     /// [`RunError::Policy`].
     pub fn new(setup: &Setup, log: W) -> Result<Self, RunError> {
-        let Setup { scenario, machine, overlay, seed } = setup;
+        let Setup { scenario, machine, overlay, terrain, seed, .. } = setup;
         let policy = setup
             .policy()
             .map_err(|source| RunError::Policy { policy_at: scenario.policy_at.clone(), source })?;
@@ -74,7 +74,7 @@ impl<W: Write> Lockstep<W> {
         bus.enable_tap();
         let config = EmulatorConfig {
             effects: overlay.effects(),
-            ..EmulatorConfig::new(machine.clone(), setup.terrain(), Some(*seed))
+            ..EmulatorConfig::new(machine.clone(), terrain.clone(), Some(*seed))
         };
         let emulator = (bus.attach("emulator"), Emulator::new(&config));
         let gateway = Gateway::new(machine, GatewayConfig::new(machine), policy);

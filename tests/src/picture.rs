@@ -1,6 +1,7 @@
 //! One picture of a run: the path from above, and strokes, loads, attitude and drive over time.
 
 mod chart;
+mod ground;
 mod palette;
 mod plan;
 mod scale;
@@ -11,7 +12,7 @@ use svg::{Anchor, Svg};
 use xt28_machine::{Machine, PerWheel, Wheel};
 
 use crate::trace::DriveCommand;
-use crate::{Finding, Ground, Scenario, Series, Trace};
+use crate::{Finding, Scenario, Series, Trace};
 
 /// Everything a picture shows.
 #[derive(Clone, Copy, Debug)]
@@ -61,10 +62,7 @@ impl Picture<'_> {
         let s = self.scenario;
         svg.text([MARGIN, 46.0], "title", Anchor::Start, &s.title);
         let passed = self.findings.iter().filter(|finding| finding.passed()).count();
-        let ground = match &s.terrain {
-            Ground::Flat => "flat ground".to_owned(),
-            Ground::Ramp(ramp) => format!("ramp {} m", ramp.height_m),
-        };
+        let ground = &s.terrain;
         let line = format!(
             "{} · policy {} · {ground} · seed {} · {} s · {passed} of {} expectations hold",
             s.name,

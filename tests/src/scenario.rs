@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::{fmt, io};
 
 use serde::Deserialize;
-use xt28_sim::Ramp;
 use xt28_sim::effects::Entry;
 
-use crate::{Expectation, ScenarioError};
+use crate::{Expectation, Ground, ScenarioError};
 
 /// One scenario as its TOML file states it. Units are in the keys.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -23,7 +22,7 @@ pub struct Scenario {
     /// What the machine has beyond the nominal one, as an overlay file says it.
     #[serde(default, rename = "effect")]
     pub effects: Vec<Entry>,
-    /// The ground.
+    /// The ground: tables of a terrain, or a terrain file relative to the scenario file.
     #[serde(default)]
     pub terrain: Ground,
     /// What the gateway drives with, as its `--policy` takes it. A `script:FILE` lies beside the
@@ -55,17 +54,6 @@ pub struct Script {
     pub path: PathBuf,
     /// Its TOML.
     pub text: String,
-}
-
-/// The ground a scenario runs on.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Ground {
-    /// Level.
-    #[default]
-    Flat,
-    /// Level with one ramp.
-    Ramp(Ramp),
 }
 
 /// Something that befalls the bench at an instant.
@@ -108,18 +96,19 @@ impl Scenario {
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ScenarioError::Read { path: path.to_owned(), source })?;
-        Self::parse(&text, path, |script| std::fs::read_to_string(script))
+        Self::parse(&text, path, |beside| std::fs::read_to_string(beside))
     }
 
     /// A scenario from TOML text; `path` gives its name and stands in errors, `read` gets the text
-    /// of a script.
+    /// of a script or of a terrain file.
     ///
     /// # Errors
-    /// [`ScenarioError::Parse`], [`ScenarioError::Value`] or [`ScenarioError::Script`].
+    /// [`ScenarioError::Parse`], [`ScenarioError::Value`], [`ScenarioError::Script`] or
+    /// [`ScenarioError::Terrain`].
     pub fn parse(
         text: &str,
         path: &Path,
-        read: impl FnOnce(&Path) -> io::Result<String>,
+        read: impl Fn(&Path) -> io::Result<String>,
     ) -> Result<Self, ScenarioError> {
         let mut scenario: Self =
             toml::from_str(text).map_err(|error| ScenarioError::from_toml(&error, text, path))?;
@@ -130,6 +119,10 @@ impl Scenario {
         if let Some(machine) = &mut scenario.machine {
             *machine = beside.join(&machine);
         }
+        scenario.terrain.resolve(beside, &read).map_err(|source| ScenarioError::Terrain {
+            terrain_at: format!("{}:{}", path.display(), line_of(text, "terrain")),
+            source,
+        })?;
         if let Some(file) = scenario.policy.strip_prefix("script:") {
             let script = beside.join(file);
             let text = read(&script).map_err(|source| ScenarioError::Script {
@@ -157,12 +150,11 @@ impl Scenario {
                 format!("= {} lies outside the run, 0 to {}", event.at_s, self.duration_s);
             return refuse("at_s", problem);
         }
-        if let Ground::Ramp(ramp) = &self.terrain
-            && let Err(problem) = ramp.check()
-        {
-            return refuse("[terrain.ramp]", format!(": {problem}"));
-        }
-        Ok(())
+        self.terrain.spec.check().map_err(|fault| ScenarioError::Value {
+            path: path.to_owned(),
+            line: fault.line_in(text, "terrain."),
+            problem: format!("[terrain.{}]: {}", fault.table, fault.problem),
+        })
     }
 }
 
@@ -197,6 +189,8 @@ stands-still = { below_m_s = 0.02 }
     fn parse(text: &str) -> Result<Scenario, ScenarioError> {
         Scenario::parse(text, Path::new("a/ramp.toml"), |script| match script.to_str() {
             Some("a/steps.toml") => Ok("[[command]]".to_owned()),
+            Some("a/kerb.toml") => Ok("kind = \"step\"\nx_m = 6\nheight_m = 0.15".to_owned()),
+            Some("a/bad.toml") => Ok("\nkind = \"step\"\nx_mm = 6".to_owned()),
             _ => Err(io::ErrorKind::NotFound.into()),
         })
     }
@@ -211,7 +205,8 @@ stands-still = { below_m_s = 0.02 }
     fn reads_every_part() {
         let scenario = parse(GOOD).unwrap();
         assert_eq!(scenario.name, "ramp");
-        assert!(matches!(&scenario.terrain, Ground::Ramp(ramp) if ramp.height_m == 0.3));
+        assert_eq!(scenario.terrain.spec.ramp[0].height_m, 0.3);
+        assert_eq!(scenario.terrain.to_string(), "ramp 0.3 m");
         assert_eq!(scenario.events, [Event { at_s: 5.0, kill: Node::Gateway }]);
         assert_eq!(scenario.expectations.len(), 1);
     }
@@ -221,6 +216,26 @@ stands-still = { below_m_s = 0.02 }
         let scenario = parse(&GOOD.replace("goto:15,0,0", "script:steps.toml")).unwrap();
         assert_eq!(scenario.script.unwrap().text, "[[command]]");
         assert_eq!(scenario.policy_at, "a/ramp.toml:3");
+    }
+
+    #[test]
+    fn a_terrain_may_lie_beside_the_scenario() {
+        let with = |terrain: &str| {
+            parse(&format!("title = \"t\"\npolicy = \"idle\"\nduration_s = 1\n{terrain}"))
+        };
+        let scenario = with("terrain = \"kerb.toml\"").unwrap();
+        assert_eq!(scenario.terrain.spec.step[0].height_m, 0.15);
+        let error = with("terrain = \"bad.toml\"").unwrap_err().to_string();
+        assert!(error.starts_with("a/ramp.toml:4: a/bad.toml:"), "{error}");
+        assert!(error.contains("`x_mm`"), "{error}");
+        let error = with("terrain = \"none.toml\"").unwrap_err().to_string();
+        assert!(error.contains("a/none.toml: cannot read the terrain file"), "{error}");
+        let error = with("terrain = 3").unwrap_err().to_string();
+        assert!(error.starts_with("a/ramp.toml:4: invalid type"), "{error}");
+        let both =
+            "[terrain.slope]\ngrade = 0.1\n[[terrain.bumps]]\nheight_m = 0.1\nwavelength_m = 3";
+        assert_eq!(with(both).unwrap().terrain.to_string(), "slope 10 %, bumps 0.1 m");
+        assert_eq!(with("").unwrap().terrain.to_string(), "flat ground");
     }
 
     #[test]

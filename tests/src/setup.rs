@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use gateway::policy::{self, Policy, SpecError};
-use xt28_machine::{Machine, MachineError};
+use xt28_machine::Machine;
 use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
 use crate::trace::Trace;
-use crate::{Evidence, Finding, Ground, Scenario, Script, Truth};
+use crate::{Evidence, Finding, Scenario, Script, SetupError, Truth};
 
 /// All that a run is made of, on either kind of bus.
 #[derive(Clone, Debug)]
@@ -19,6 +19,10 @@ pub struct Setup {
     pub machine: Machine,
     /// What it has beyond the nominal one.
     pub overlay: Overlay,
+    /// The ground.
+    pub terrain: Terrain,
+    /// The map of it that a policy is given, which need not be true.
+    pub map: Terrain,
     /// Seed of all noise.
     pub seed: u64,
 }
@@ -27,15 +31,17 @@ impl Setup {
     /// Loads what `scenario` names; `seed` overrides its own.
     ///
     /// # Errors
-    /// The machine file is refused.
-    pub fn new(scenario: Scenario, seed: Option<u64>) -> Result<Self, MachineError> {
+    /// The machine file is refused, or a height map that the terrain names.
+    pub fn new(scenario: Scenario, seed: Option<u64>) -> Result<Self, SetupError> {
         let machine = match &scenario.machine {
             Some(path) => Machine::load(path)?,
             None => Machine::xt28(),
         };
         let seed = seed.unwrap_or(scenario.seed);
         let overlay = Overlay { entries: scenario.effects.clone() };
-        Ok(Self { scenario, machine, overlay, seed })
+        let terrain = scenario.terrain.spec.build()?;
+        let map = scenario.terrain.spec.build_map(&terrain)?;
+        Ok(Self { scenario, machine, overlay, terrain, map, seed })
     }
 
     /// The policy that drives.
@@ -48,15 +54,6 @@ impl Setup {
                 Ok(Box::new(policy::Script::parse(text, path).map_err(SpecError::from)?))
             }
             None => policy::from_spec(&self.scenario.policy, &self.machine),
-        }
-    }
-
-    /// The ground as the plant takes it.
-    #[must_use]
-    pub fn terrain(&self) -> Terrain {
-        match &self.scenario.terrain {
-            Ground::Flat => Terrain::Flat,
-            Ground::Ramp(ramp) => Terrain::ramp(ramp),
         }
     }
 

@@ -14,7 +14,7 @@ pub struct MapPose {
     pub heading_rad: f64,
 }
 
-/// A rectangle of heights around the machine: 30 by 20 over 15 by 10 m (paper 4.2).
+/// A rectangle of heights around the machine: 30 by 20 over 15 by 10 m (paper 5.2).
 ///
 /// The paper says neither where in the rectangle the machine is nor whether points lie on its rim.
 /// ASSUMED: the machine is in the middle, or `ahead_m` behind it, and each point in the middle of a
@@ -40,7 +40,7 @@ impl Default for LocalMap {
 }
 
 impl LocalMap {
-    /// Standard deviation of a height that the machine reads, m (paper 3.3.2).
+    /// Standard deviation of a height that the machine reads, m (paper 4.4).
     pub const NOISE_M: f64 = 0.045;
 
     /// Number of heights.

@@ -14,7 +14,7 @@ pub struct MapSpec {
     /// Layers that the survey does not have, such as obstacles put there after it.
     pub leave_out: Vec<LayerKind>,
     /// Standard deviation of the map's heights at its grid points, m, 0 to 1; independent, and the
-    /// same at every look. The paper finds 0.045 on a car park (3.3.2).
+    /// same at every look. The paper finds 0.045 on a car park (4.4).
     pub noise_m: f64,
     /// How far the map lies off the ground along x, y, z, m, each within ±100.
     pub shift_m: [f64; 3],

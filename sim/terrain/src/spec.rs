@@ -132,6 +132,14 @@ impl TerrainSpec {
         each("map", std::slice::from_ref(&self.map), MapSpec::check)
     }
 
+    /// The spec as a terrain file says it.
+    ///
+    /// # Errors
+    /// A seed above 2^63 - 1, which no TOML can hold.
+    pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        toml::to_string(self)
+    }
+
     /// The spec with the files that it names taken as lying in `folder`.
     #[must_use]
     pub fn beside(mut self, folder: &Path) -> Self {
@@ -145,7 +153,8 @@ impl TerrainSpec {
     /// environments can train on ten grounds of one file.
     #[must_use]
     pub fn reseeded(mut self, seed: u64) -> Self {
-        let turn = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32);
+        // TOML has no integer of 64 bits without a sign.
+        let turn = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32) >> 1;
         self.perlin.iter_mut().for_each(|layer| layer.seed ^= turn);
         self.boulders.iter_mut().for_each(|layer| layer.seed ^= turn);
         self.map.seed ^= turn;

@@ -3,12 +3,13 @@
 use xt28_machine::{Axle, Machine, Wheel};
 
 use super::Picture;
+use super::ground;
 use super::palette;
 use super::scale::{Scale, round_step};
 use super::svg::{Anchor, Svg, simplified};
+use crate::Expectation;
 use crate::finding::significant;
 use crate::trace::Pose;
-use crate::{Expectation, Ground};
 
 /// Footprints are at least this far apart along the way, m: a little more than the machine is
 /// long. On a shorter way the first one is drawn faintly under the last.
@@ -97,7 +98,7 @@ impl<'a> Plan<'a> {
         };
         let at = |[x_m, y_m]: [f64; 2]| [east.pixel(x_m), north.pixel(y_m)];
         self.grid(svg, x, &east, &north);
-        self.ground(svg, &at);
+        ground::draw(&self.picture.scenario.terrain.spec, [self.low_m, self.high_m], svg, &at);
         let path: Vec<_> = self.path_m.iter().map(|p| at(*p)).collect();
         for footprint in &self.footprints {
             footprint.draw(svg, self.picture.machine, &at);
@@ -127,26 +128,6 @@ impl<'a> Plan<'a> {
         }
         svg.line([east.pixel_from, north.pixel_from], [east.pixel_to, north.pixel_from], "axis");
         svg.line([east.pixel_from, north.pixel_from], [east.pixel_from, north.pixel_to], "axis");
-    }
-
-    fn ground(&self, svg: &mut Svg, at: &impl Fn([f64; 2]) -> [f64; 2]) {
-        let Ground::Ramp(ramp) = &self.picture.scenario.terrain else {
-            return;
-        };
-        let [foot, crest, end, out] = ramp.x_m;
-        for (from, to, opacity) in [(foot, out, 0.6), (crest, end, 1.0)] {
-            let corners = [
-                at([from, ramp.y_min_m]),
-                at([to, ramp.y_min_m]),
-                at([to, ramp.y_max_m]),
-                at([from, ramp.y_max_m]),
-            ];
-            let style = format!("fill=\"{}\" opacity=\"{opacity}\"", palette::GROUND);
-            svg.polygon(&corners, &style);
-        }
-        let label = format!("ramp {} m", ramp.height_m);
-        let [x, y] = at([(crest + end) / 2.0, ramp.y_min_m]);
-        svg.text([x, y + 18.0], "tick", Anchor::Middle, &label);
     }
 
     fn target(&self, svg: &mut Svg, at: &impl Fn([f64; 2]) -> [f64; 2]) {

@@ -5,6 +5,7 @@
 
 mod program;
 
+use std::env;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -14,7 +15,8 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use program::{Output, Program};
 use xt28_bus::SocketCan;
 use xt28_machine::SimTime;
-use xt28_scenarios::{Cost, Ground, Node, Recording, Setup, Truth, sha256};
+use xt28_scenarios::{Cost, Node, Recording, Setup, Truth, sha256};
+use xt28_sim::TerrainSpec;
 
 use crate::Failure;
 use crate::artefacts::Artefacts;
@@ -124,15 +126,11 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
         fs::write(&file, setup.overlay.to_toml())?;
         add("--effects", file.display().to_string());
     }
-    if let Ground::Ramp(ramp) = &setup.scenario.terrain {
-        let [foot, crest, end, out] = ramp.x_m;
+    // The emulator finds the files that the terrain names beside its terrain file, which is new.
+    let terrain = setup.scenario.terrain.spec.clone().beside(&env::current_dir()?);
+    if terrain != TerrainSpec::default() {
         let file = folder.join("terrain.toml");
-        let text = format!(
-            "kind = \"ramp\"\nx_m = [{foot:?}, {crest:?}, {end:?}, {out:?}]\nheight_m = {:?}\n\
-             y_min_m = {:?}\ny_max_m = {:?}\n",
-            ramp.height_m, ramp.y_min_m, ramp.y_max_m
-        );
-        fs::write(&file, text)?;
+        fs::write(&file, terrain.to_toml()?)?;
         add("--terrain", file.display().to_string());
     }
     Ok(arguments)

@@ -67,6 +67,18 @@ impl Boulder {
         self.height_m * share.max(0.0).sqrt()
     }
 
+    /// Sixteen points of its rim, counter-clockwise, m.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)]
+    pub fn outline_m(&self) -> [[f64; 2]; 16] {
+        let [cos, sin] = self.along;
+        std::array::from_fn(|index| {
+            let (up, out) = libm::sincos(PI * index as f64 / 8.0);
+            let (u, v) = (out * self.radius_m[0], up * self.radius_m[1]);
+            [self.centre_m[0] + u * cos - v * sin, self.centre_m[1] + u * sin + v * cos]
+        })
+    }
+
     /// The square around it, whichever way it lies.
     fn bounds(&self) -> Extent {
         let reach_m = self.radius_m[0].max(self.radius_m[1]);
@@ -218,6 +230,11 @@ mod tests {
             assert!((boulder.height_m(x, y) - 0.3 * 0.75_f64.sqrt()).abs() < 1e-12);
         }
         assert_eq!(boulder.height_m(1.0 + 0.49, 2.0 + 0.65), 0.0);
+        for [x, y] in boulder.outline_m() {
+            // On the rim, where the height goes with the root of the distance from it.
+            assert!(boulder.height_m(x, y) < 1e-7);
+            assert!(boulder.height_m(0.1 + 0.9 * x, 0.2 + 0.9 * y) > 0.12);
+        }
     }
 
     #[test]

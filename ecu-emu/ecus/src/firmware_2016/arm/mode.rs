@@ -6,21 +6,22 @@ use super::forces::Forces;
 use super::left_pad::{LEVELLING, LeftPad};
 use super::levelling::{Gains, Levelling, Stance};
 use crate::firmware_2016::Quirks;
-use crate::firmware_2016::whole::cut;
 
 const TILT: u8 = 16;
 const ALL_UP: u8 = 19;
 const ALL_DOWN: u8 = 21;
-/// All up and all down: mA more each tick, and where it ends.
-const ALL_STEP_MA: f64 = 0.4;
-const ALL_MAX_MA: f64 = 80.0;
+/// All up and all down: tenths of mA more each tick, and where it ends. Tenths, so that no sum of
+/// fractions falls one short.
+const ALL_STEP: i32 = 4;
+const ALL_MAX: i32 = 800;
 
 /// The modes' memory.
 #[derive(Clone, Debug)]
 pub(super) struct Modes {
     pub(super) levelling: Levelling,
     pub(super) accumulators: Accumulators,
-    all_ma: f64,
+    /// Tenths of mA.
+    all: i32,
     /// 1 to 4: buttons 10, 11, 12, 8.
     last_preset: i32,
 }
@@ -38,7 +39,7 @@ pub(super) struct Tick<'a> {
 
 impl Modes {
     pub(super) const fn new(levelling: Levelling) -> Self {
-        Self { levelling, accumulators: Accumulators::new(), all_ma: 0.0, last_preset: 0 }
+        Self { levelling, accumulators: Accumulators::new(), all: 0, last_preset: 0 }
     }
 
     /// mA about the valves' dead-bands this tick, > 0 retracts; `None` leaves the valves as they
@@ -46,7 +47,7 @@ impl Modes {
     pub(super) fn step(&mut self, pad: &mut LeftPad, t: &Tick<'_>) -> Option<PerWheel<i32>> {
         let mode = pad.toggle.mode();
         if mode != Some(ALL_UP) && mode != Some(ALL_DOWN) {
-            self.all_ma = 0.0;
+            self.all = 0;
         }
         match mode {
             None => return Some(PerWheel::splat(0)),
@@ -97,11 +98,11 @@ impl Modes {
     fn all(&mut self, pad: &mut LeftPad, up: bool) -> PerWheel<i32> {
         if !pad.toggle.is_held() {
             pad.toggle.clear();
-            self.all_ma = 0.0;
+            self.all = 0;
             return PerWheel::splat(0);
         }
-        self.all_ma = (self.all_ma + ALL_STEP_MA).min(ALL_MAX_MA);
-        PerWheel::splat(cut(if up { -self.all_ma } else { self.all_ma }))
+        self.all = (self.all + ALL_STEP).min(ALL_MAX);
+        PerWheel::splat(if up { -self.all / 10 } else { self.all / 10 })
     }
 
     /// Buttons that act once.

@@ -8,7 +8,8 @@ use crate::firmware_2016::whole::{cut, input_mv, unsigned};
 
 /// Share of the last pressure that a tick keeps: 1 Hz.
 const PRESSURE_KEEP: f64 = 0.94088;
-/// Stroke rate: (v + gain * change) / 1.1, change in whole mm a tick.
+/// Stroke rate: v / 1.1 + gain / 1.1 * change, change in whole mm a tick; summed in this order, for
+/// the cut is one count off in another.
 const RATE_DIVISOR: f64 = 1.1;
 /// Gain for a call every 20 ms, and the one that a call every 10 ms needs to read mm/s.
 const RATE_GAIN_20_MS: f64 = 5.0;
@@ -60,7 +61,7 @@ impl Sensing {
         let gain = if quirks.stroke_rate_for_20_ms { RATE_GAIN_20_MS } else { RATE_GAIN_10_MS };
         self.rate = PerWheel::from_fn(|w| {
             let change_mm = f64::from(stroke_mm[w] - last_mm[w]);
-            kept((self.rate[w] + gain * change_mm) / RATE_DIVISOR, quirks)
+            kept(self.rate[w] / RATE_DIVISOR + gain / RATE_DIVISOR * change_mm, quirks)
         });
         let rate = self.rate.map(cut);
         Readings {

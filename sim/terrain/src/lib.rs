@@ -4,6 +4,7 @@
 //! |---|---|
 //! | ground to stand on | [`Terrain`]: a plane without end or a shared [`Grid`] |
 //! | where a ball touches it | [`Terrain::nearest`], [`Terrain::rest_m`] |
+//! | a machine set down on it | [`Stance`] |
 //! | what it is made of | [`TerrainSpec`], from a TOML file or a part of one |
 //! | what a policy sees of it | [`LocalMap`] over the map of [`TerrainSpec::build_map`] |
 //!
@@ -101,6 +102,7 @@ mod minima;
 mod raster;
 mod search;
 mod spec;
+mod stance;
 mod terrain;
 
 pub use error::TerrainError;
@@ -118,4 +120,5 @@ pub use local_map::{LocalMap, MapPose};
 pub use map::MapSpec;
 pub use minima::{Minima, Nearest};
 pub use spec::{Fault, LayerKind, TerrainSpec};
+pub use stance::Stance;
 pub use terrain::{Plane, Terrain};

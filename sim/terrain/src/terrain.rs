@@ -50,8 +50,14 @@ impl Plane {
     #[must_use]
     #[allow(clippy::cast_precision_loss)]
     pub fn through(points_m: &[[f64; 3]]) -> Self {
-        let count = points_m.len().max(1) as f64;
-        let mean = |axis: usize| points_m.iter().map(|p| p[axis]).sum::<f64>() / count;
+        let Some(first) = points_m.first() else {
+            return Self::default();
+        };
+        // From the first point on, so that equal heights make exactly level ground.
+        let count = points_m.len() as f64;
+        let mean = |axis: usize| {
+            first[axis] + points_m.iter().map(|p| p[axis] - first[axis]).sum::<f64>() / count
+        };
         let [x, y, z] = [mean(0), mean(1), mean(2)];
         let moment = |a: usize, b: usize| {
             let centre = [x, y, z];
@@ -92,6 +98,10 @@ impl Terrain {
     /// is seldom the one below its centre.
     #[must_use]
     pub fn rest_m(&self, x_m: f64, y_m: f64, radius_m: f64) -> f64 {
+        if let Self::Plane(plane) = self {
+            let [a, b] = plane.rise;
+            return plane.at_m(x_m, y_m) + radius_m * (1.0 + a * a + b * b).sqrt();
+        }
         let mut z_m = self.height_m(x_m, y_m) + radius_m;
         // Each pass lifts the ball clear of what it cuts deepest. Ground within a radius is finite,
         // so this ends; by far most ground needs three passes.

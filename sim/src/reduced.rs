@@ -13,34 +13,31 @@ mod ground;
 mod newton;
 mod pose;
 mod spatial;
+#[cfg(test)]
+mod tests;
+mod touch;
 mod tree;
 
 use glam::{DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
-use self::contact::{Body, Contact, ContactLaw};
-use self::ground::{BAND_M, Touches};
+use self::contact::{Body, Contact};
 use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, State, WHEELS};
 use self::spatial::{angular, linear};
+use self::touch::{CONTACTS_MAX, Search};
 use self::tree::Tree;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Parts, Terrain};
 
-/// Most contacts of the whole machine: hollows under all wheels at once, or it lies on its side.
-const CONTACTS_MAX: usize = 64;
-/// Sheet steel on ground (assumed): stiff enough to be seen at once, soft enough for any step.
-const HULL: ContactLaw = ContactLaw { stiffness_n_m: 4.0e6, damping_n_s_m: 6.0e4, friction: 0.5 };
-/// A wheel's speed toward the ground counts this long ahead when contacts are looked for, beside
-/// the step: c/k of the softest tyre worth having, s.
-const LOOK_AHEAD_S: f64 = 0.03;
-
 /// The vehicle's bodies in reduced coordinates. A clone is a snapshot.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ReducedBodies {
     tree: Tree,
-    terrain: Terrain,
+    search: Search,
     state: State,
+    /// Those of the last step; here so that a step allocates nothing.
+    contacts: Vec<Contact>,
     ground_force_n: PerWheel<f64>,
     chassis_force_n: f64,
     convergence: Convergence,
@@ -62,8 +59,9 @@ impl Bodies for ReducedBodies {
         state.position.z = (0..6).map(lift).fold(f64::MIN, f64::max);
         Self {
             tree,
-            terrain: terrain.clone(),
+            search: Search::new(terrain.clone()),
             state,
+            contacts: Vec::with_capacity(CONTACTS_MAX),
             ground_force_n: PerWheel::splat(0.0),
             chassis_force_n: 0.0,
             convergence: Convergence::default(),
@@ -91,12 +89,28 @@ impl Bodies for ReducedBodies {
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
         let pose = Pose::new(&self.tree, &self.state);
         let inertias = Inertias::new(&self.tree, &pose);
-        let mut contacts = Contacts::find(&self.tree, &self.terrain, &pose, &self.state, dt_s);
+        let mut contacts = core::mem::take(&mut self.contacts);
+        self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
         let balance = self.balance(&pose, &inertias, loads, dt_s);
-        let contacts = contacts.touching();
-        self.convergence = balance.solve(&mut self.state.rate, contacts);
+        self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
         self.state.advance(dt_s);
-        self.note_forces(contacts, dt_s);
+        self.note_forces(&contacts, dt_s);
+        self.contacts = contacts;
+    }
+}
+
+/// Keeps the room for contacts, which a derived clone would cut to their number.
+impl Clone for ReducedBodies {
+    fn clone(&self) -> Self {
+        let mut contacts = Vec::with_capacity(CONTACTS_MAX);
+        contacts.extend_from_slice(&self.contacts);
+        Self {
+            tree: self.tree.clone(),
+            search: self.search.clone(),
+            state: self.state.clone(),
+            contacts,
+            ..*self
+        }
     }
 }
 
@@ -175,81 +189,6 @@ impl State {
         }
         for i in 0..6 {
             self.arm_rad[i] += dt_s * self.rate[ARMS + i];
-        }
-    }
-}
-
-/// The contacts of one step.
-struct Contacts {
-    all: [Contact; CONTACTS_MAX],
-    count: usize,
-}
-
-impl Contacts {
-    fn find(tree: &Tree, terrain: &Terrain, pose: &Pose, state: &State, dt_s: f64) -> Self {
-        let mut found = Self { all: [Contact::NONE; CONTACTS_MAX], count: 0 };
-        let frames = pose.frame_twists(&state.rate);
-        let search = Search { terrain, origin: state.position, dt_s };
-        for i in 0..6 {
-            let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &state.rate);
-            let ball =
-                Ball { body: Body::Wheel(i), centre: pose.arm[i].wheel, radius_m: tree.radius_m };
-            search.touches(&ball, &arm, &tree.tyres[i], &mut found);
-        }
-        for (i, hull) in tree.hulls.iter().enumerate() {
-            for part in hull {
-                let centre = pose.frame[i].point(part.centre_m.into());
-                let ball = Ball { body: Body::Frame(i), centre, radius_m: part.radius_m };
-                search.touches(&ball, &frames[i], &HULL, &mut found);
-            }
-        }
-        found
-    }
-
-    /// A contact beyond the last is lost: the machine then lies on 64 points already.
-    fn push(&mut self, contact: Contact) {
-        if let Some(free) = self.all.get_mut(self.count) {
-            *free = contact;
-            self.count += 1;
-        }
-    }
-
-    fn touching(&mut self) -> &mut [Contact] {
-        &mut self.all[..self.count]
-    }
-}
-
-/// A ball of the vehicle's outside, from the front frame's origin.
-struct Ball {
-    body: Body,
-    centre: DVec3,
-    radius_m: f64,
-}
-
-/// What a search for contacts needs beside the balls.
-struct Search<'a> {
-    terrain: &'a Terrain,
-    origin: DVec3,
-    dt_s: f64,
-}
-
-impl Search<'_> {
-    fn touches(
-        &self,
-        ball: &Ball,
-        twist: &spatial::Spatial,
-        law: &ContactLaw,
-        found: &mut Contacts,
-    ) {
-        let speed_m_s = spatial::velocity_at(twist, ball.centre).length();
-        let reach_m = ball.radius_m + (LOOK_AHEAD_S + self.dt_s) * speed_m_s + BAND_M;
-        for touch in Touches::find(self.terrain, self.origin + ball.centre, reach_m).iter() {
-            let depth_m = ball.radius_m - touch.distance_m;
-            // Half way between the undeformed surfaces, as other engines have it: a tyre rolls on a
-            // radius between the free and the loaded one.
-            let at = touch.point - self.origin - touch.normal * (0.5 * depth_m);
-            let place = (ball.body, at, touch.normal);
-            found.push(Contact::new(law, place, depth_m, touch.weight, self.dt_s));
         }
     }
 }

@@ -8,12 +8,13 @@
 
 use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
 use super::spatial::{
-    Spatial, Spatial6, add, add_scaled, add6, apply, apply_transposed, dot, take_rank_one,
+    Spatial, Spatial6, ZERO, ZERO6, add, add_scaled, add6, apply, apply_transposed, dot,
+    take_rank_one,
 };
 use super::tree::Tree;
 
 /// What stiffens the tree within a step, beside the bodies' inertias; all times the step, kg and kg m².
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Stiffening {
     /// On each hinge's own rate: implicit springs, dampers, brakes. The first six stay zero.
     pub(super) hinge: Generalized,
@@ -23,8 +24,15 @@ pub(super) struct Stiffening {
     pub(super) frame: Option<[Spatial6; 3]>,
 }
 
+impl Stiffening {
+    /// None.
+    pub(super) const fn new() -> Self {
+        Self { hinge: [0.0; FREEDOMS], wheel: [ZERO6; 6], frame: None }
+    }
+}
+
 /// A hinge that was eliminated.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Pivot {
     column: Spatial,
     row: Spatial,
@@ -32,20 +40,27 @@ struct Pivot {
 }
 
 /// The factors.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Factors {
     pivot: [Pivot; FREEDOMS - 6],
     root: Spatial6,
 }
 
 impl Factors {
+    /// Nothing factored yet.
+    pub(super) const fn new() -> Self {
+        let none = Pivot { column: ZERO, row: ZERO, inverse: 0.0 };
+        Self { pivot: [none; FREEDOMS - 6], root: ZERO6 }
+    }
+
     /// `None` if the matrix has no positive pivots, which friction that jams an arm can do.
-    pub(super) fn new(
+    pub(super) fn factor(
+        &mut self,
         pose: &Pose,
         inertias: &BodyInertias<Spatial6>,
         with: &Stiffening,
-    ) -> Option<Self> {
-        let mut pivot = [Pivot::default(); FREEDOMS - 6];
+    ) -> Option<()> {
+        let pivot = &mut self.pivot;
         let mut frame = inertias.frame;
         if let Some(touching) = &with.frame {
             for (frame, touching) in frame.iter_mut().zip(touching) {
@@ -68,7 +83,8 @@ impl Factors {
             pivot[hinge - 6] = eliminate(&mut body, &pose.joint_axis[i], with.hinge[hinge])?;
             add6(&mut frame[i], &body);
         }
-        Some(Self { pivot, root: factor_root(frame[0])? })
+        self.root = frame[0];
+        factor_root(&mut self.root)
     }
 
     /// The velocities `x` with (matrix) x = `right`.
@@ -133,7 +149,7 @@ fn eliminate(body: &mut Spatial6, axis: &Spatial, stiffening: f64) -> Option<Piv
 }
 
 /// LU factors of the front frame's matrix in place, by columns, with the pivots inverted.
-fn factor_root(mut m: Spatial6) -> Option<Spatial6> {
+fn factor_root(m: &mut Spatial6) -> Option<()> {
     for k in 0..6 {
         let pivot = m[k][k];
         if pivot.is_nan() || pivot <= 0.0 {
@@ -152,7 +168,7 @@ fn factor_root(mut m: Spatial6) -> Option<Spatial6> {
             }
         }
     }
-    Some(m)
+    Some(())
 }
 
 fn solve_root(lu: &Spatial6, x: &mut Spatial) {

@@ -47,10 +47,17 @@ pub(super) struct Convergence {
     pub(super) residual_m_s: f64,
 }
 
+/// What an iteration writes over that of the last.
+struct Work {
+    stiffening: Stiffening,
+    factors: Factors,
+}
+
 impl Balance<'_> {
     /// Moves `rate` from the step's start to its end. Contacts keep their final velocities.
     pub(super) fn solve(&self, rate: &mut Generalized, contacts: &mut [Contact]) -> Convergence {
         let mut smooth = self.lack;
+        let mut work = Work { stiffening: Stiffening::new(), factors: Factors::new() };
         self.set_velocities(rate, contacts);
         let mut report = Convergence::default();
         for iteration in 0..ITERATIONS_MAX {
@@ -60,11 +67,11 @@ impl Balance<'_> {
             if report.residual_m_s < TOLERANCE_M_S {
                 break;
             }
-            let Some((stiffening, step)) = self.direction(&residual, rate, contacts, iteration)
-            else {
+            let coupled = iteration < CAUTIOUS_FROM;
+            let Some(step) = self.direction(&residual, rate, contacts, coupled, &mut work) else {
                 break;
             };
-            let change = self.smooth_change(&residual, &step, &stiffening, contacts);
+            let change = self.smooth_change(&residual, &step, &work.stiffening, contacts);
             let share = self.search(&smooth, &change, &step, rate, contacts);
             for k in 0..FREEDOMS {
                 rate[k] += share * step[k];
@@ -77,39 +84,37 @@ impl Balance<'_> {
         report
     }
 
-    /// The Newton step, and the matrix it was made with. Leaves the contacts' share of it in them.
+    /// The Newton step. Leaves the contacts' share of it in them.
     fn direction(
         &self,
         residual: &Generalized,
         rate: &Generalized,
         contacts: &mut [Contact],
-        iteration: usize,
-    ) -> Option<(Stiffening, Generalized)> {
-        let right = residual.map(|r| -r);
-        let mut coupled = iteration < CAUTIOUS_FROM;
-        loop {
-            let stiffening = self.stiffening(rate, contacts, coupled);
-            if let Some(factors) = Factors::new(self.pose, self.inertias, &stiffening) {
-                let step = factors.solve(self.pose, &right);
-                let descends = dot20(&step, residual) < 0.0;
-                if descends || !coupled {
-                    self.set_steps(&step, contacts);
-                    return Some((stiffening, step));
-                }
-            } else if !coupled {
-                return None;
+        coupled: bool,
+        work: &mut Work,
+    ) -> Option<Generalized> {
+        self.stiffen(rate, contacts, coupled, &mut work.stiffening);
+        if work.factors.factor(self.pose, self.inertias, &work.stiffening).is_some() {
+            let step = work.factors.solve(self.pose, &residual.map(|r| -r));
+            if !coupled || dot20(&step, residual) < 0.0 {
+                self.set_steps(&step, contacts);
+                return Some(step);
             }
-            coupled = false;
         }
+        // Friction that jams an arm has no descent with it; without it there always is one.
+        if coupled { self.direction(residual, rate, contacts, false, work) } else { None }
     }
 
-    fn stiffening(
+    fn stiffen(
         &self,
         rate: &Generalized,
         contacts: &mut [Contact],
         coupled: bool,
-    ) -> Stiffening {
-        let mut out = Stiffening { hinge: self.hinge, wheel: [ZERO6; 6], frame: None };
+        out: &mut Stiffening,
+    ) {
+        out.hinge = self.hinge;
+        out.wheel = [ZERO6; 6];
+        out.frame = None;
         for i in 0..6 {
             out.hinge[WHEELS + i] += self.brake_slope(i, rate);
         }
@@ -121,7 +126,6 @@ impl Balance<'_> {
                 Body::Frame(i) => add6(&mut out.frame.get_or_insert([ZERO6; 3])[i], &matrix),
             }
         }
-        out
     }
 
     /// What the step changes of the residual without contacts and brakes: the matrix times the step

@@ -1,0 +1,151 @@
+//! The tree's dynamics against what they must equal: sums over bodies, and what is conserved.
+
+use glam::{DQuat, DVec3};
+use proptest::prelude::*;
+use xt28_machine::{Machine, PerWheel};
+
+use super::ReducedBodies;
+use super::factor::{Factors, Stiffening};
+use super::pose::{FREEDOMS, Generalized, Inertias, Pose, State, WHEELS};
+use super::spatial::{Spatial, angular, apply, at_point, dot, linear, velocity_at, wrench_at};
+use super::tree::Tree;
+use crate::bodies::{Bodies, Loads};
+use crate::{Effects, Parts, Terrain};
+
+fn parts() -> Parts {
+    Parts::new(&Machine::xt28(), &Effects::default())
+}
+
+/// A state off the middle in everything.
+fn bent(seed: f64) -> State {
+    let wave = |i: usize, size: f64| size * (seed + 1.7 * i as f64).sin();
+    State {
+        position: DVec3::new(wave(1, 5.0), wave(2, 5.0), 3.0),
+        turn: DQuat::from_euler(glam::EulerRot::ZYX, wave(3, 3.0), wave(4, 0.5), wave(5, 0.5)),
+        joint_rad: [wave(6, 0.4), wave(7, 0.4)],
+        arm_rad: core::array::from_fn(|i| wave(8 + i, 0.3)),
+        rate: core::array::from_fn(|i| wave(20 + i, if i < WHEELS { 0.7 } else { 3.0 })),
+    }
+}
+
+/// Twists of all bodies under generalised velocities, with each body's spatial inertia applied.
+fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Spatial, Spatial)> {
+    let pose = Pose::new(tree, state);
+    let inertias = Inertias::new(tree, &pose).spatial;
+    let frames = pose.frame_twists(rate);
+    let mut out: Vec<(Spatial, Spatial)> =
+        (0..3).map(|i| (frames[i], apply(&inertias.frame[i], &frames[i]))).collect();
+    for i in 0..6 {
+        let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], rate);
+        let wheel = pose.wheel_twist(i, &arm, rate);
+        out.push((arm, apply(&inertias.arm[i], &arm)));
+        out.push((wheel, apply(&inertias.wheel[i], &wheel)));
+    }
+    out
+}
+
+/// The mass matrix by columns: J^T I J summed over the bodies.
+fn mass_matrix(tree: &Tree, state: &State) -> Vec<Generalized> {
+    let unit = |k: usize| -> Generalized { core::array::from_fn(|i| f64::from(u8::from(i == k))) };
+    let bodies: Vec<_> = (0..FREEDOMS).map(|k| momenta(tree, state, &unit(k))).collect();
+    let entry = |j: usize, k: usize| {
+        bodies[j]
+            .iter()
+            .zip(&bodies[k])
+            .map(|((twist, _), (_, momentum))| dot(twist, momentum))
+            .sum()
+    };
+    (0..FREEDOMS).map(|k| core::array::from_fn(|j| entry(j, k))).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn the_factors_solve_the_sum_over_bodies(seed in 0.0..100.0_f64, sliding in any::<bool>()) {
+        let tree = Tree::new(&parts());
+        let state = bent(seed);
+        let (pose, inertias) = {
+            let pose = Pose::new(&tree, &state);
+            let inertias = Inertias::new(&tree, &pose).spatial;
+            (pose, inertias)
+        };
+        let mut with = Stiffening::new();
+        for k in 6..FREEDOMS {
+            with.hinge[k] = 100.0 * (1.0 + (seed * k as f64).sin());
+        }
+        // A contact under one wheel and one under a frame; sliding makes it lopsided.
+        let g = glam::DMat3::from_cols_array(&[9e2, 0.0, 0.0, 0.0, 4e2, 0.0,
+            if sliding { -3e2 } else { 0.0 }, 0.0, 7e2]);
+        let at = pose.arm[3].wheel - DVec3::Z * 0.7;
+        with.wheel[3] = at_point(&g, at);
+        with.frame = Some([[[0.0; 6]; 6], at_point(&g, pose.frame[1].com), [[0.0; 6]; 6]]);
+
+        let right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
+        let mut factors = Factors::new();
+        prop_assert!(factors.factor(&pose, &inertias, &with).is_some());
+        let x = factors.solve(&pose, &right);
+
+        let frames = pose.frame_twists(&x);
+        let wheel = pose.wheel_twist(3, &pose.arm_twist(3, &frames[1], &x), &x);
+        let on_wheel = wrench_at(g * velocity_at(&wheel, at), at);
+        let com = pose.frame[1].com;
+        let mut wrenches = [[0.0; 6]; 6];
+        wrenches[3] = on_wheel;
+        let on_frame = [[0.0; 6], wrench_at(g * velocity_at(&frames[1], com), com), [0.0; 6]];
+        let contacts = super::newton::generalised(&pose, &wrenches, on_frame);
+        let matrix = mass_matrix(&tree, &state);
+        for k in 0..FREEDOMS {
+            let inertial: f64 = (0..FREEDOMS).map(|j| matrix[j][k] * x[j]).sum();
+            let left = inertial + with.hinge[k] * x[k] + contacts[k];
+            prop_assert!((left - right[k]).abs() < 1e-9, "{k}: {left} is not {}", right[k]);
+        }
+    }
+}
+
+/// Kinetic energy, and momentum about the world's origin.
+fn conserved(bodies: &ReducedBodies) -> (f64, DVec3, DVec3) {
+    let state = &bodies.state;
+    let all = momenta(&bodies.tree, state, &state.rate);
+    let energy = all.iter().map(|(twist, momentum)| 0.5 * dot(twist, momentum)).sum();
+    let p: DVec3 = all.iter().map(|(_, momentum)| linear(momentum)).sum();
+    let l: DVec3 = all.iter().map(|(_, momentum)| angular(momentum)).sum();
+    (energy, p, l + state.position.cross(p))
+}
+
+/// Energy, momentum and angular momentum lost by a tumbling, swinging machine in 1 s, as shares.
+fn lost(dt_s: f64) -> [f64; 3] {
+    let mut weightless = parts();
+    weightless.gravity_m_s2 = [0.0; 3];
+    let mut bodies = ReducedBodies::new(&weightless, &Terrain::Flat, PerWheel::splat(0.2));
+    bodies.state = bent(0.3);
+    bodies.state.position.z = 100.0;
+    let (e0, p0, l0) = conserved(&bodies);
+    for _ in 0..(1.0 / dt_s).round() as usize {
+        bodies.advance(&Loads::default(), dt_s);
+    }
+    let (e, p, l) = conserved(&bodies);
+    [(e / e0 - 1.0).abs(), (p - p0).length() / p0.length(), (l - l0).length() / l0.length()]
+}
+
+#[test]
+fn a_free_machine_keeps_its_energy_and_momentum() {
+    let (coarse, fine) = (lost(1e-3), lost(1e-4));
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(fine < 2e-3, "{fine}");
+        // First order: a tenth of the step, a tenth of the error.
+        assert!(fine < 0.2 * coarse, "{coarse} {fine}");
+    }
+}
+
+#[test]
+fn a_falling_machine_falls() {
+    let mut bodies = ReducedBodies::new(&parts(), &Terrain::Flat, PerWheel::splat(0.25));
+    bodies.state.position.z = 100.0;
+    for _ in 0..100 {
+        bodies.advance(&Loads::default(), 0.01);
+    }
+    let motion = bodies.motion();
+    assert!((motion.velocity_m_s[2] + 9.81).abs() < 1e-9, "{:?}", motion.velocity_m_s);
+    assert!(motion.arm.0.iter().all(|arm| arm.angle_rad.abs() < 1e-9), "nothing else moves");
+}

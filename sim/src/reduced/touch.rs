@@ -1,0 +1,125 @@
+//! Which parts of the vehicle are at the ground: wheels every step, the hull when it can be.
+
+use glam::DVec3;
+
+use super::contact::{Body, Contact, ContactLaw};
+use super::ground::{BAND_M, Touches};
+use super::pose::{Pose, State};
+use super::spatial::{Spatial, angular, velocity_at};
+use super::tree::Tree;
+use crate::{HullBall, Terrain};
+
+/// Most contacts of the whole machine: hollows under all wheels at once, or it lies on its side. A
+/// contact beyond the last is lost.
+pub(super) const CONTACTS_MAX: usize = 64;
+/// Sheet steel on ground (assumed): stiff enough to be seen at once, soft enough for any step.
+const HULL: ContactLaw = ContactLaw { stiffness_n_m: 4.0e6, damping_n_s_m: 6.0e4, friction: 0.5 };
+/// How far from the ground a part of the hull is told to be at most, m.
+const CLEARANCE_MAX_M: f64 = 0.4;
+/// Radius about a frame's centre of mass that holds its hull, m.
+const HULL_REACH_M: f64 = 4.0;
+
+/// Search for contacts: what it needs of the vehicle, and how far the hull is from needing it.
+#[derive(Clone, Debug)]
+pub(super) struct Search {
+    terrain: Terrain,
+    /// Path that each frame's hull may yet travel before any of it can touch, m. Only saves time:
+    /// nothing that is found depends on it.
+    clear_m: [f64; 3],
+}
+
+/// A ball of the vehicle's outside, from the front frame's origin.
+struct Ball {
+    body: Body,
+    centre: DVec3,
+    radius_m: f64,
+    speed_m_s: f64,
+}
+
+impl Search {
+    pub(super) const fn new(terrain: Terrain) -> Self {
+        Self { terrain, clear_m: [0.0; 3] }
+    }
+
+    /// Fills `found` with the contacts that may make a force within this step.
+    pub(super) fn contacts(
+        &mut self,
+        (tree, pose, state): (&Tree, &Pose, &State),
+        dt_s: f64,
+        found: &mut Vec<Contact>,
+    ) {
+        found.clear();
+        let frames = pose.frame_twists(&state.rate);
+        for i in 0..6 {
+            let centre = pose.arm[i].wheel;
+            let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &state.rate);
+            let speed_m_s = velocity_at(&arm, centre).length();
+            let ball = Ball { body: Body::Wheel(i), centre, radius_m: tree.radius_m, speed_m_s };
+            self.touches(&ball, state.position, &tree.tyres[i], dt_s, found);
+        }
+        for (i, hull) in tree.hulls.iter().enumerate() {
+            let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
+                + angular(&frames[i]).length() * HULL_REACH_M;
+            self.clear_m[i] -= speed_m_s * dt_s;
+            if self.clear_m[i] < ahead_m(&HULL, speed_m_s, dt_s) {
+                self.clear_m[i] =
+                    self.hull((i, hull), &frames[i], (pose, state), dt_s, found).max(0.0);
+            }
+        }
+    }
+
+    /// Contacts of one frame's hull; returns how far the rest of it is from the ground, m.
+    fn hull(
+        &self,
+        (frame, hull): (usize, &[HullBall]),
+        twist: &Spatial,
+        (pose, state): (&Pose, &State),
+        dt_s: f64,
+        found: &mut Vec<Contact>,
+    ) -> f64 {
+        let mut clear_m = CLEARANCE_MAX_M;
+        for part in hull {
+            let centre = pose.frame[frame].point(part.centre_m.into());
+            let world = (state.position + centre).to_array();
+            let mut gap_m = CLEARANCE_MAX_M;
+            self.terrain.each_minimum(world, part.radius_m + clear_m, |nearest| {
+                gap_m = gap_m.min(nearest.distance_m - part.radius_m);
+            });
+            clear_m = clear_m.min(gap_m);
+            let speed_m_s = velocity_at(twist, centre).length();
+            if gap_m <= ahead_m(&HULL, speed_m_s, dt_s) {
+                let ball =
+                    Ball { body: Body::Frame(frame), centre, radius_m: part.radius_m, speed_m_s };
+                self.touches(&ball, state.position, &HULL, dt_s, found);
+            }
+        }
+        clear_m
+    }
+
+    fn touches(
+        &self,
+        ball: &Ball,
+        origin: DVec3,
+        law: &ContactLaw,
+        dt_s: f64,
+        found: &mut Vec<Contact>,
+    ) {
+        let reach_m = ball.radius_m + ahead_m(law, ball.speed_m_s, dt_s);
+        for touch in Touches::find(&self.terrain, origin + ball.centre, reach_m).iter() {
+            let depth_m = ball.radius_m - touch.distance_m;
+            // Half way between the undeformed surfaces, as other engines have it: a tyre rolls on a
+            // radius between the free and the loaded one.
+            let at = touch.point - origin - touch.normal * (0.5 * depth_m);
+            if found.len() < CONTACTS_MAX {
+                let place = (ball.body, at, touch.normal);
+                found.push(Contact::new(law, place, depth_m, touch.weight, dt_s));
+            }
+        }
+    }
+}
+
+/// How far from a ball ground can be and still make a force within the step, and a band to share
+/// contacts in, m: a damper acts from k d = c d' on.
+fn ahead_m(law: &ContactLaw, speed_m_s: f64, dt_s: f64) -> f64 {
+    (law.damping_n_s_m / law.stiffness_n_m + dt_s) * speed_m_s + BAND_M
+}

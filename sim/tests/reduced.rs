@@ -1,0 +1,199 @@
+//! The fast core behind the vehicle: statics, the reference solver, snapshots, smoothness.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_sim::terrain::{Extent, Grid};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Plant, Ramp, RapierBodies, ReducedBodies, Terrain, Vehicle,
+    VehicleState,
+};
+
+fn idle() -> Actuation {
+    Actuation::idle(1200.0)
+}
+
+fn vehicle<B: Bodies>(machine: &Machine, terrain: &Terrain, rate_hz: u32) -> Vehicle<B> {
+    let step = Duration::from_secs_f64(1.0 / f64::from(rate_hz));
+    Vehicle::with(machine, &Effects::default(), terrain, PerWheel::splat(0.17), step)
+}
+
+/// Steps for `seconds` of an actuation over time.
+fn run(
+    plant: &mut impl Plant,
+    rate_hz: u32,
+    seconds: f64,
+    actuation: impl Fn(f64) -> Actuation,
+) -> Vec<VehicleState> {
+    (0..(seconds * f64::from(rate_hz)).round() as u32)
+        .map(|step| {
+            plant.step(&actuation(f64::from(step) / f64::from(rate_hz)));
+            *plant.state()
+        })
+        .collect()
+}
+
+fn settled<B: Bodies>(terrain: &Terrain, rate_hz: u32) -> Vehicle<B> {
+    let mut vehicle = vehicle(&Machine::xt28(), terrain, rate_hz);
+    run(&mut vehicle, rate_hz, 4.0, |_| idle());
+    vehicle
+}
+
+/// Drives off, turns left and right, moves the arms.
+fn lively(t: f64) -> Actuation {
+    Actuation {
+        pump_displacement: [(t / 2.0).min(1.0); 2],
+        steer_opening: [0.3 * (0.8 * t).sin(), 0.2 * (0.8 * t - 0.5).sin()],
+        arm_opening: PerWheel::from_fn(|w| 0.15 * (t + w.index() as f64).sin()),
+        ..idle()
+    }
+}
+
+/// Slopes of some 15 degrees, hollows and crests of a few metres.
+fn gentle() -> Terrain {
+    Terrain::Grid(Arc::new(Grid::from_fn(Extent::default(), |x, y| {
+        0.15 * (1.1 * x).sin() * (0.9 * y + 0.4).cos() + 0.02 * (3.0 * x - 2.0 * y).sin()
+    })))
+}
+
+fn field_ramp() -> Terrain {
+    Terrain::ramp(&Ramp { x_m: [4.0, 7.0, 8.5, 11.5], height_m: 0.3, y_min_m: -1.9, y_max_m: -0.5 })
+}
+
+#[test]
+fn the_ground_carries_the_weight_and_each_tyre_sags_by_its_share() {
+    let machine = Machine::xt28();
+    let mut vehicle = vehicle::<ReducedBodies>(&machine, &Terrain::Flat, 120);
+    run(&mut vehicle, 120, 20.0, |_| Actuation { brake_released: false, ..idle() });
+    let s = vehicle.state();
+    let weight_n = machine.mass_kg() * GRAVITY_M_S2;
+    assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 1e-6);
+    let linkage = machine.linkage();
+    for wheel in Wheel::ALL {
+        let x_m = machine.wheels.axle_x_m[wheel.axle() as usize];
+        let drop_m = linkage.at_stroke(s.stroke_m[wheel]).drop_m - linkage.at_stroke(0.25).drop_m;
+        let sag_m = drop_m - s.position_m[2] - x_m * s.pitch_rad.sin();
+        let wanted_m = s.ground_force_n[wheel] / machine.vehicle.tyre_stiffness_n_m;
+        // The wheel swings about its pivot as well, which moves it along the slope of the frame.
+        assert!((sag_m - wanted_m).abs() < 5e-4, "{wheel}: {sag_m} m, not {wanted_m} m");
+    }
+}
+
+#[test]
+fn rolling_takes_the_torque_of_the_rolling_resistance_at_any_step() {
+    let machine = Machine::xt28();
+    for rate_hz in [60, 120, 200] {
+        let mut vehicle = settled::<ReducedBodies>(&Terrain::Flat, rate_hz);
+        run(&mut vehicle, rate_hz, 10.0, |_| Actuation { pump_displacement: [1.0; 2], ..idle() });
+        let torque_nm = vehicle.state().wheel_torque_nm.sum();
+        let w = &machine.wheels;
+        let wanted_nm = w.rolling_resistance * machine.mass_kg() * GRAVITY_M_S2 * w.radius_m;
+        assert!((torque_nm / wanted_nm - 1.0).abs() < 2e-3, "{rate_hz} Hz: {torque_nm} Nm");
+    }
+}
+
+/// Largest distance between the paths of two solvers, m.
+fn apart(one: &[VehicleState], other: &[VehicleState]) -> f64 {
+    let distance = |(a, b): (&VehicleState, &VehicleState)| {
+        let squares = a.position_m.iter().zip(b.position_m).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    one.iter().zip(other).map(distance).fold(0.0, f64::max)
+}
+
+fn against_rapier(terrain: &Terrain, actuation: impl Fn(f64) -> Actuation) -> f64 {
+    let mut reference = settled::<RapierBodies>(terrain, 200);
+    let mut fast = settled::<ReducedBodies>(terrain, 200);
+    let reference = run(&mut reference, 200, 10.0, &actuation);
+    apart(&reference, &run(&mut fast, 200, 10.0, &actuation))
+}
+
+#[test]
+fn it_stands_drives_and_climbs_where_the_reference_does() {
+    let drive = |t: f64| Actuation { pump_displacement: [(t / 2.0).min(1.0); 2], ..idle() };
+    let cases = [
+        ("stand", against_rapier(&Terrain::Flat, |_| idle()), 0.02),
+        ("straight", against_rapier(&Terrain::Flat, drive), 0.03),
+        ("ramp", against_rapier(&field_ramp(), drive), 0.05),
+        ("gentle", against_rapier(&gentle(), drive), 0.10),
+    ];
+    for (name, apart_m, bound_m) in cases {
+        assert!(apart_m < bound_m, "{name}: {apart_m} m apart, {bound_m} m allowed");
+    }
+}
+
+#[test]
+fn a_clone_goes_on_bit_for_bit() {
+    let mut vehicle = settled::<ReducedBodies>(&gentle(), 120);
+    run(&mut vehicle, 120, 3.0, lively);
+    let mut clone = vehicle.clone();
+    let later = |t: f64| lively(t + 3.0);
+    assert_eq!(run(&mut vehicle, 120, 3.0, later), run(&mut clone, 120, 3.0, later));
+}
+
+#[test]
+fn it_stays_calm_at_every_step_in_use() {
+    for rate_hz in [60, 120, 200] {
+        let mut vehicle = settled::<ReducedBodies>(&gentle(), rate_hz);
+        let states = run(&mut vehicle, rate_hz, 15.0, lively);
+        for s in &states {
+            let tilt = s.roll_rad.abs().max(s.pitch_rad.abs());
+            assert!(tilt < 0.3 && s.ground_force_n.sum() < 4e5, "{rate_hz} Hz: {s:?}");
+        }
+        let brake = Actuation { brake_released: false, ..idle() };
+        let still = run(&mut vehicle, rate_hz, 5.0, |_| brake);
+        let rate = still[still.len() - 1].front_rate_rad_s;
+        assert!(rate.iter().all(|r| r.abs() < 1e-3), "{rate_hz} Hz: {rate:?}");
+    }
+}
+
+/// The numbers of a state that a parameter may move.
+fn outputs(s: &VehicleState) -> Vec<f64> {
+    let mut out = s.position_m.to_vec();
+    out.extend([s.yaw_rad, s.roll_rad, s.pitch_rad]);
+    out.extend(s.joint_rad);
+    out.extend(s.stroke_m.0);
+    out.extend(s.wheel_speed_rad_s.0);
+    out
+}
+
+/// What a run of 2 s after settling shows, with one number of the machine off by a share.
+fn nudged(terrain: &Terrain, number: fn(&mut Machine) -> &mut f64, share: f64) -> Vec<Vec<f64>> {
+    let mut machine = Machine::xt28();
+    *number(&mut machine) *= 1.0 + share;
+    let mut vehicle = vehicle::<ReducedBodies>(&machine, terrain, 120);
+    run(&mut vehicle, 120, 1.5, |_| idle());
+    run(&mut vehicle, 120, 2.0, |t| lively(t + 1.0)).iter().map(outputs).collect()
+}
+
+/// Central differences over steps of 1e-6 and 1e-5 agree: there is neither noise nor a jump.
+#[test]
+fn outputs_are_smooth_in_every_parameter() {
+    let numbers: [(&str, fn(&mut Machine) -> &mut f64); 7] = [
+        ("front frame's mass", |m| &mut m.masses.front_frame_kg),
+        ("lock's stiffness", |m| &mut m.hydraulics.lock_stiffness_n_m),
+        ("valve's speed", |m| &mut m.hydraulics.speed_full_m_s),
+        ("tyre's stiffness", |m| &mut m.vehicle.tyre_stiffness_n_m),
+        ("friction", |m| &mut m.wheels.friction),
+        ("rolling resistance", |m| &mut m.wheels.rolling_resistance),
+        ("joint's damping", |m| &mut m.vehicle.joint_damping_nms),
+    ];
+    for terrain in [Terrain::Flat, gentle()] {
+        for (name, number) in numbers {
+            let slopes = |share: f64| -> Vec<Vec<f64>> {
+                let (up, down) =
+                    (nudged(&terrain, number, share), nudged(&terrain, number, -share));
+                let slope = |(up, down): (&f64, &f64)| (up - down) / (2.0 * share);
+                up.iter().zip(&down).map(|(u, d)| u.iter().zip(d).map(slope).collect()).collect()
+            };
+            let (fine, coarse) = (slopes(1e-6), slopes(1e-5));
+            for k in 0..fine[0].len() {
+                let size = fine.iter().map(|s| s[k].abs()).fold(1e-4, f64::max);
+                let apart = fine.iter().zip(&coarse).map(|(f, c)| (f[k] - c[k]).abs());
+                let apart = apart.fold(0.0, f64::max);
+                assert!(apart < 0.01 * size, "{name}, output {k}: {apart} of {size}");
+            }
+        }
+    }
+}

@@ -75,6 +75,27 @@ fn every_switch_changes_what_it_says_and_by_how_much() {
     assert_eq!(SHOWN.len(), Quirks::firmware().list().len());
 }
 
+/// The page that declares every switch says the same defaults and figures as the code.
+#[test]
+fn the_documented_table_has_every_switch_with_its_default_and_its_figures() {
+    let page = include_str!("../../../docs/firmware-2016.md");
+    let rows: Vec<Vec<&str>> = page
+        .lines()
+        .filter(|line| line.starts_with("| `") && line.split('|').count() == 6)
+        .map(|line| line.split('|').map(str::trim).collect())
+        .collect();
+    let listed = Quirks::firmware().list();
+    let names: Vec<String> = listed.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let documented: Vec<&str> = rows.iter().map(|row| row[1]).collect();
+    assert_eq!(documented, names, "one row a switch, in the order of the code");
+    for ((name, default), row) in listed.iter().zip(&rows) {
+        assert_eq!(row[2], if *default { "on" } else { "**off**" }, "{name}");
+        let shown = SHOWN.iter().find(|shown| shown.name == *name).expect("measured above");
+        let figures = format!("{} / {}", shown.on, shown.off);
+        assert!(row[4].contains(&figures), "{name}: {} does not say {figures}", row[4]);
+    }
+}
+
 fn force_closed_length_0_82(quirks: Quirks) -> f64 {
     let mut arm = Arm::new(quirks);
     arm.pins.pressure_a_mv = PerWheel::splat(2100.0);

@@ -22,6 +22,10 @@ pub const BUILTIN: &[(&str, &str)] = texts!(
     "ramp",
     "ramp-locked",
     "ramp-automatic",
+    "cross-slope",
+    "bumpy-field",
+    "bumpy-field-locked",
+    "kerb",
     "command-loss"
 );
 
@@ -32,6 +36,10 @@ const SCRIPTS: &[(&str, &str)] = texts!(
     "arm-step-response.script",
     "ramp-locked.script",
     "ramp-automatic.script",
+    "cross-slope.script",
+    "bumpy-field.script",
+    "bumpy-field-locked.script",
+    "kerb.script",
 );
 
 /// The text of a built-in script.

@@ -194,3 +194,101 @@ fn every_wheel_name_is_known() {
         assert_eq!(judge(&expect, &Trace::default()).len(), 1);
     }
 }
+
+/// Six wheels with these loads, kN, on the cylinders of a machine at 0.25 m.
+fn carrying(wheel_kn: [f64; 6]) -> Trace {
+    let machine = Machine::xt28();
+    let m = &machine.masses;
+    let unsprung_n = (m.wheel_kg + 0.5 * m.arm_kg) * GRAVITY_M_S2;
+    let ratio = machine.linkage().at_stroke(0.25).force_ratio;
+    trace(|trace, at_s| {
+        trace.stroke_m.push(at_s, PerWheel::splat(0.25));
+        trace
+            .cylinder_load_n
+            .push(at_s, PerWheel(wheel_kn.map(|kn| (kn * 1e3 - unsprung_n) / ratio)));
+    })
+}
+
+#[test]
+fn even_ground_pressure_is_the_deviation_of_shares() {
+    let expect = "even-ground-pressure = { from_s = 1, to_s = 9, below = 0.1 }";
+    let alike = judge(expect, &carrying([27.8; 6]));
+    assert!(alike[0].measured.unwrap() < 1e-6 && alike[0].passed());
+    // Shares of 0.27, 0.15 and 0.08 a wheel: by hand 0.0787.
+    let even = judge(expect, &carrying([45.0, 45.0, 25.0, 25.0, 13.333, 13.333]));
+    assert!((even[0].measured.unwrap() - 0.0785).abs() < 5e-4, "{even:?}");
+    assert!(even[0].passed());
+    assert_eq!(verdicts(expect, &carrying([70.0, 20.0, 5.0, 40.0, 1.0, 30.0])), [false]);
+    let from = "even-ground-pressure = { from_s = 1, to_s = 9, from = 0.1, below = 0.2 }";
+    assert_eq!(verdicts(from, &carrying([27.8; 6])), [false], "too even to have felt the ground");
+    assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+#[test]
+fn wheels_in_the_air_carry_nothing() {
+    let expect = "unsupported = { wheels = [\"MR\", \"ML\"], from_s = 1, to_s = 9, within_kn = 1 }";
+    assert_eq!(verdicts(expect, &carrying([50.0, 50.0, 0.2, -0.2, 30.0, 30.0])), [true, true]);
+    assert_eq!(verdicts(expect, &carrying([50.0, 50.0, 1.5, 0.0, 30.0, 30.0])), [false, true]);
+    assert_eq!(verdicts(expect, &Trace::default()), [false, false]);
+}
+
+#[test]
+fn the_hardest_knock_lies_between_its_bounds() {
+    let expect = "peak-load = { from_s = 2, to_s = 8, from_kn = 90, to_kn = 120 }";
+    let knock = |at: f64, kn: f64| {
+        trace(move |trace, at_s| {
+            let mut load_n = PerWheel::splat(50e3);
+            if (at_s - at).abs() < 0.02 {
+                load_n[Wheel::Ml] = kn * 1e3;
+            }
+            trace.cylinder_load_n.push(at_s, load_n);
+        })
+    };
+    assert_eq!(verdicts(expect, &knock(5.0, 100.0)), [true]);
+    assert_eq!(verdicts(expect, &knock(5.0, 130.0)), [false]);
+    assert_eq!(verdicts(expect, &knock(1.0, 100.0)), [false], "outside the window");
+    assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+#[test]
+fn level_means_both_angles_over_the_whole_window() {
+    let expect = "stays-level = { from_s = 2, to_s = 8, roll_deg = 0.5, pitch_deg = 1.0 }";
+    let leaning = |roll_deg: f64, pitch_deg: f64, until_s: f64| {
+        trace(move |trace, at_s| {
+            let (roll_deg, pitch_deg) =
+                if at_s < until_s { (roll_deg, pitch_deg) } else { (0.0, 0.0) };
+            let lean =
+                Attitude { roll_rad: roll_deg.to_radians(), pitch_rad: pitch_deg.to_radians() };
+            trace.attitude.push(at_s, lean);
+        })
+    };
+    assert_eq!(verdicts(expect, &leaning(-5.0, 3.0, 1.9)), [true, true]);
+    assert_eq!(verdicts(expect, &leaning(-5.0, 0.9, 2.1)), [false, true]);
+    assert_eq!(verdicts(expect, &leaning(0.4, -1.1, 9.0)), [true, false]);
+    assert_eq!(verdicts(expect, &Trace::default()), [false, false]);
+}
+
+/// An arm that goes from 0 to 0.1 m as 1 - exp(-t / `time_constant_s`), `beyond_m` too far.
+fn answering(time_constant_s: f64, beyond_m: f64) -> Trace {
+    trace(|trace, at_s| {
+        let target_m = if at_s < 1.0 { 0.0 } else { 0.1 };
+        let way = 1.0 - (-(at_s - 1.0).max(0.0) / time_constant_s).exp();
+        trace.stroke_target_m.push(at_s, PerWheel::splat(Some(target_m)));
+        trace.stroke_m.push(at_s, PerWheel::splat((0.1 + beyond_m) * way));
+    })
+}
+
+#[test]
+fn a_step_is_judged_by_rise_overshoot_and_what_is_left() {
+    let expect = "step-response = { wheels = [\"FR\"], rise_s = [0.95, 1.2], overshoot_mm = 2, steady_mm = 1 }";
+    // ln 9 time constants from 10 % to 90 %.
+    let found = judge(expect, &answering(0.5, 0.0));
+    assert!((found[0].measured.unwrap() - 0.5 * 9_f64.ln()).abs() < 0.02, "{found:?}");
+    assert!(found.iter().all(Finding::passed), "{found:?}");
+    assert_eq!(verdicts(expect, &answering(0.6, 0.0)), [false, true, true]);
+    assert_eq!(verdicts(expect, &answering(0.5, 0.0015)), [true, true, false]);
+    assert_eq!(verdicts(expect, &answering(0.5, 0.003)), [true, false, false]);
+    let stuck = answering(1e9, 0.0);
+    assert_eq!(verdicts(expect, &stuck), [false, true, false]);
+    assert_eq!(verdicts(expect, &Trace::default()), [false, false, false]);
+}

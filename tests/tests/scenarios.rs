@@ -47,6 +47,10 @@ scenarios! {
     ramp: "ramp",
     ramp_locked: "ramp-locked",
     ramp_automatic: "ramp-automatic",
+    cross_slope: "cross-slope",
+    bumpy_field: "bumpy-field",
+    bumpy_field_locked: "bumpy-field-locked",
+    kerb: "kerb",
     command_loss: "command-loss",
 }
 

@@ -4,7 +4,7 @@ use std::alloc::System;
 use std::time::Duration;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-use xt28_dbc::messages::{ArmTarget, ArmTargetMode, DriveTarget};
+use xt28_dbc::messages::{ArmTarget, ArmTargetMode, ArmValve, DriveTarget};
 use xt28_ecus::{ArmEcu, ArmOutputs, ArmPins, DriveEcu, DriveOutputs, DrivePins, Port, pins};
 use xt28_machine::{Machine, PerWheel, SimTime};
 
@@ -12,11 +12,18 @@ use xt28_machine::{Machine, PerWheel, SimTime};
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 #[test]
-fn a_second_of_driving_allocates_nothing() {
+fn a_second_of_driving_allocates_nothing_in_any_mode() {
+    use ArmTargetMode::{Automatic, ManualPosition, ManualValve, Off};
+    for mode in [Off, Automatic, ManualPosition, ManualValve] {
+        drives_without_allocating(mode);
+    }
+}
+
+fn drives_without_allocating(mode: ArmTargetMode) {
     let machine = Machine::xt28();
     let (mut arm, mut drive) = (ArmEcu::new(&machine), DriveEcu::new(&machine));
     let (mut arm_out, mut drive_out) = (ArmOutputs::default(), DriveOutputs::default());
-    let arm_pins = ArmPins {
+    let mut arm_pins = ArmPins {
         stroke_mv: PerWheel::splat(pins::stroke_mv(0.1)),
         pressure_a_mv: PerWheel::splat(pins::pressure_mv(5e6)),
         pressure_b_mv: PerWheel::splat(pins::pressure_mv(5e5)),
@@ -35,7 +42,6 @@ fn a_second_of_driving_allocates_nothing() {
         for tick in ticks {
             let now = SimTime::ZERO + Duration::from_millis(10) * tick as u32;
             let counter = (tick % 16) as u8;
-            let mode = ArmTargetMode::ManualPosition;
             let target = ArmTarget {
                 fr_mm: mm,
                 fl_mm: mm,
@@ -47,6 +53,19 @@ fn a_second_of_driving_allocates_nothing() {
                 counter,
             };
             arm.on_frame(now, Port::Can1, &target.encode().unwrap());
+            if mode == ArmTargetMode::ManualValve {
+                let percent = 10.0;
+                let valve = ArmValve {
+                    fr_percent: percent,
+                    fl_percent: percent,
+                    mr_percent: percent,
+                    ml_percent: percent,
+                    br_percent: percent,
+                    bl_percent: percent,
+                    counter,
+                };
+                arm.on_frame(now, Port::Can1, &valve.encode().unwrap());
+            }
             for frame in pins::imu_frames([0.1, 0.0, 0.0], [0.0, 0.0, 9.81]) {
                 arm.on_frame(now, Port::Can2, &frame);
             }
@@ -59,6 +78,9 @@ fn a_second_of_driving_allocates_nothing() {
                 counter,
             };
             drive.on_frame(now, Port::Can1, &command.encode().unwrap());
+            // Arms that stand under an open valve would be taken for stuck.
+            let stroke_m = 0.15 + 0.04 * (tick as f64 * 0.05).sin();
+            arm_pins.stroke_mv = PerWheel::splat(pins::stroke_mv(stroke_m));
             arm.tick(now, &arm_pins, &mut arm_out);
             drive.tick(now, &drive_pins, &mut drive_out);
         }
@@ -66,6 +88,9 @@ fn a_second_of_driving_allocates_nothing() {
     run(0..100);
     let region = Region::new(ALLOCATOR);
     run(100..200);
-    assert_eq!(region.change().allocations + region.change().reallocations, 0);
+    let change = region.change();
+    assert_eq!(change.allocations + change.reallocations, 0, "{mode:?}");
+    let moves = arm_out.solenoid_a_ma.sum() + arm_out.solenoid_b_ma.sum() > 0.0;
+    assert_eq!(moves, mode != ArmTargetMode::Off, "{mode:?}");
     assert!(arm_out.can1.frames().len() > 20 && drive_out.can1.frames().len() > 5);
 }

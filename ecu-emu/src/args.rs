@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use ecu_emu::Profile;
+use ecu_emu::{Profile, SensorFault};
 
 /// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
 ///
@@ -43,6 +43,15 @@ pub(crate) struct Args {
     /// Seed of the sensor noise; exact sensors without it
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+
+    /// What goes wrong with sensors and supply (TOML: `[[fault]]`, `[[event]]`)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mishaps: Option<PathBuf>,
+
+    /// A sensor that fails: `SENSOR[:WHEEL]:KIND[=BY]@FROM_S[-TO_S]`, BY in mV, of a wheel speed in
+    /// Hz; `stroke:FR:offset=100@5-8`. May be given more than once
+    #[arg(long, value_name = "FAULT")]
+    pub(crate) sensor_fault: Vec<SensorFault>,
 
     /// Stroke of all six cylinders at the start
     #[arg(long, value_name = "MM", default_value_t = 170.0, value_parser = stroke_mm)]

@@ -61,6 +61,18 @@ impl Ecus {
         }
     }
 
+    /// Pulls the reset line of the arm ECU, of the drive ECU, for a moment. The firmware of 2016 has
+    /// no life but one.
+    pub(crate) fn reset(&mut self, now: SimTime, [arm, drive]: [bool; 2]) {
+        let Self::Paper(ecus) = self else { return };
+        if arm {
+            ecus.0.reset(now);
+        }
+        if drive {
+            ecus.1.reset(now);
+        }
+    }
+
     /// One tick of both.
     pub(crate) fn tick(&mut self, now: SimTime, pins: &Pins, out: &mut Outputs) {
         match self {

@@ -10,10 +10,14 @@ use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Terrain, Vehicle, VehicleState};
 use xt28_ubx::Geodetic;
 
+use crate::acquisition::Acquisition;
 use crate::ecus::{Ecus, Outputs, Pins};
 use crate::engine::{Engine, EngineSpeaker};
 use crate::inbox::Inbox;
+use crate::mishaps::Mishaps;
+use crate::power::{EcuName, Supplies};
 use crate::receiver::Receiver;
+use crate::sensor_faults::SensorFaults;
 use crate::wires::{Wire, Wires};
 use crate::{Cab, Operator, wiring};
 
@@ -46,6 +50,8 @@ pub struct EmulatorConfig {
     pub quirks: Quirks,
     /// Who sits in the cab; that profile only.
     pub operator: Operator,
+    /// What goes wrong with sensors and supply.
+    pub mishaps: Mishaps,
 }
 
 impl EmulatorConfig {
@@ -63,6 +69,7 @@ impl EmulatorConfig {
             profile: Profile::Paper,
             quirks: Quirks::firmware(),
             operator: Operator::idle(),
+            mishaps: Mishaps::default(),
         }
     }
 }
@@ -79,6 +86,9 @@ pub struct Emulator {
     engine: Engine,
     engine_speaker: EngineSpeaker,
     sensors: Sensors,
+    sensor_faults: SensorFaults,
+    acquisition: Acquisition,
+    supplies: Supplies,
     imu: Imu,
     gnss: GnssReceiver,
     receiver: Receiver,
@@ -109,6 +119,9 @@ impl Emulator {
             engine,
             engine_speaker: EngineSpeaker::new(machine.drive.engine_torque_max_nm),
             sensors: Sensors::new(effects),
+            sensor_faults: SensorFaults::new(&config.mishaps.faults, config.seed),
+            acquisition: Acquisition::new(config.seed),
+            supplies: Supplies::new(&config.mishaps.events),
             imu: Imu::new(effects),
             gnss: GnssReceiver::new(machine, effects, config.seed),
             receiver: Receiver::new(config.origin),
@@ -136,11 +149,16 @@ impl Emulator {
         let readings = self.sensors.read(&state);
         let cab = self.operator.cab(now);
         self.hear_wires(now, &state, &cab);
-        let pins = Pins {
+        let mut pins = Pins {
             arm: wiring::arm_pins(&readings),
             drive: wiring::drive_pins(&readings),
             cab: cab.pins(),
         };
+        self.sensor_faults.apply(now, &mut pins);
+        self.acquisition.read(&mut pins);
+        pins.arm.supply_mv = self.supplies.voltage_mv(now, EcuName::Sms);
+        pins.drive.supply_mv = self.supplies.voltage_mv(now, EcuName::Dms);
+        self.ecus.reset(now, self.supplies.take_resets(now));
         self.ecus.tick(now, &pins, &mut self.out);
         self.out.spread(&mut self.wires);
         self.send(out);
@@ -163,7 +181,10 @@ impl Emulator {
             self.ecus.on_wire(now, Wire::Display, frame);
         }
         self.wires.clear();
-        self.wires.extend(Wire::Inertial, &wiring::imu_frames(&self.imu.step(state)));
+        let imu = wiring::imu_frames(&self.imu.step(state));
+        if !self.sensor_faults.imu_is_silent(now) {
+            self.wires.extend(Wire::Inertial, &imu);
+        }
         for frame in self.engine_speaker.frames(now, state).into_iter().flatten() {
             self.wires.extend(Wire::Engine, &[frame]);
         }

@@ -4,21 +4,28 @@
 //! metres and newtons; `wiring` is the harness between them.
 #![forbid(unsafe_code)]
 
+mod acquisition;
 mod cab;
 mod ecu_effects;
 mod ecus;
 mod emulator;
 mod engine;
 mod inbox;
+mod mishaps;
 mod operator;
+mod power;
 mod receiver;
+mod sensor_faults;
 mod truth;
 mod wires;
 mod wiring;
 
 pub use cab::Cab;
 pub use emulator::{Emulator, EmulatorConfig, TICK};
+pub use mishaps::{Mishaps, MishapsError};
 pub use operator::{Operator, OperatorError};
+pub use power::{EcuName, PowerEvent, PowerKind};
+pub use sensor_faults::{FaultKind, Sensor, SensorFault, WheelName};
 pub use truth::{TRUTH_HEADER, write_truth_row};
 pub use wires::Wire;
 pub use xt28_ecus::Profile;

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use ecu_emu::{Emulator, EmulatorConfig, Operator, Profile, TICK, TRUTH_HEADER, write_truth_row};
+use ecu_emu::{
+    Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, write_truth_row,
+};
 use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
@@ -80,7 +82,16 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     if let Some(path) = &args.effects {
         config.effects = Overlay::load(path)?.effects();
     }
+    if let Some(path) = &args.mishaps {
+        config.mishaps = Mishaps::load(path)?;
+    }
+    config.mishaps.faults.extend(&args.sensor_fault);
     config.profile = args.profile;
+    if args.profile == Profile::Firmware2016 && !config.mishaps.events.is_empty() {
+        return Err("--mishaps: events of the supply are for the paper's profile; \
+                    leave out [[event]] with --profile 2016"
+            .into());
+    }
     if let Some(path) = &args.operator {
         if args.profile == Profile::Paper {
             return Err("--operator: nobody sits in the cab of the paper's profile; \

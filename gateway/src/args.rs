@@ -9,7 +9,7 @@ use gateway::Geodetic;
 ///
 /// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver where the policy
 /// needs one. Ends when the policy is done, or after --duration; SIGINT and SIGTERM stop the
-/// machine, go silent, then exit.
+/// machine, go silent, then exit. After a safety stop SIGUSR1 is the order to arm again.
 ///
 /// Exit code: 0 done, 1 not done (goal missed, safety stop, interrupted), 2 usage or I/O.
 #[derive(Debug, Parser)]

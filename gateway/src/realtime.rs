@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Reason, Status, policy};
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 
@@ -44,6 +44,8 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
     };
     let config = GatewayConfig { origin: args.origin, ..GatewayConfig::new(&machine) };
     let interrupt = watch_signals().map_err(Problem::Signals)?;
+    let arm = Arc::new(AtomicBool::new(false));
+    signal_hook::flag::register(SIGUSR1, Arc::clone(&arm)).map_err(Problem::Signals)?;
     let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
     let gateway = Gateway::new(&machine, config, policy);
     let run = Run {
@@ -51,6 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         wire,
         port,
         interrupt,
+        arm,
         start: Instant::now(),
         ending: false,
         never_armed: None,
@@ -73,6 +76,8 @@ struct Run {
     wire: Wire,
     port: Option<SerialPort>,
     interrupt: Arc<AtomicBool>,
+    /// Raised by SIGUSR1: the order to arm again, after a stop that somebody has looked at.
+    arm: Arc<AtomicBool>,
     start: Instant,
     /// The order to disarm was given.
     ending: bool,
@@ -140,6 +145,9 @@ impl Run {
 
     fn tick(&mut self, now: Duration, out: &mut Outbox) -> Result<(), Problem> {
         self.gateway.on_bus(self.wire.is_well());
+        if self.arm.swap(false, Ordering::Relaxed) && !self.ending {
+            self.gateway.order(Order::Arm);
+        }
         out.clear();
         // Receiver bytes and frames came in up to here.
         let now = sim_time(now.max(self.start.elapsed()));

@@ -4,14 +4,32 @@ use xt28_dbc::{Frame, messages as m};
 use xt28_machine::PerWheel;
 
 use crate::trace::{Attitude, DriveCommand, EcuState, Fault, Motion, Trace, wrapped_rad};
+use crate::trouble::TroubleReader;
 
 /// Reads frames in bus order into a [`Trace`].
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Decoder {
     trace: Trace,
     stroke: Halves,
     load: Halves,
+    /// Of the pendulum-arm ECU, of the transmission ECU.
+    trouble: [TroubleReader; 2],
 }
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self {
+            trace: Trace::default(),
+            stroke: Halves::default(),
+            load: Halves::default(),
+            trouble: [ARM_ADDRESS, DRIVE_ADDRESS].map(TroubleReader::new),
+        }
+    }
+}
+
+/// Source addresses of the two ECUs on J1939.
+const ARM_ADDRESS: u8 = 0x28;
+const DRIVE_ADDRESS: u8 = 0x29;
 
 /// A per-wheel measurement that comes in two frames of one tick: the front pair, and the others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,6 +58,13 @@ impl Decoder {
     pub fn push(&mut self, at_s: f64, frame: &Frame) {
         self.trace.frames += 1;
         self.trace.end_s = at_s;
+        let [arm, drive] = &mut self.trouble;
+        if let Some(trouble) = arm.push(frame) {
+            self.trace.arm_trouble.push(at_s, trouble);
+        }
+        if let Some(trouble) = drive.push(frame) {
+            self.trace.drive_trouble.push(at_s, trouble);
+        }
         if let Err(error) = self.decode(at_s, frame) {
             self.trace.faults.push(Fault { at_s, what: format!("{frame:?}: {error}") });
         }

@@ -4,12 +4,16 @@ mod arm_speed;
 mod attitude;
 mod ecu_state;
 mod ground_pressure;
+mod holds_still;
+mod leans;
 mod level;
+mod passes_states;
 mod peak_load;
 mod pose;
 mod rear_joint;
 mod standstill;
 mod step_response;
+mod trouble;
 mod unsupported;
 mod weight;
 mod wheel_load;
@@ -23,12 +27,16 @@ pub use arm_speed::ArmSpeed;
 pub use attitude::RollPeak;
 pub use ecu_state::{Ecu, ReachesState};
 pub use ground_pressure::EvenGroundPressure;
+pub use holds_still::HoldsStill;
+pub use leans::Leans;
 pub use level::StaysLevel;
+pub use passes_states::PassesStates;
 pub use peak_load::PeakLoad;
 pub use pose::ReachesPose;
 pub use rear_joint::RearFollows;
 pub use standstill::StandsStill;
 pub use step_response::StepResponse;
+pub use trouble::ReportsTrouble;
 pub use unsupported::Unsupported;
 pub use weight::CarriesWeight;
 
@@ -60,6 +68,14 @@ pub enum Expectation {
     Unsupported(Unsupported),
     /// The greatest load of a cylinder lies between two bounds.
     PeakLoad(PeakLoad),
+    /// An ECU passes through states in an order.
+    PassesStates(PassesStates),
+    /// The arms stay where they are for a while.
+    HoldsStill(HoldsStill),
+    /// An ECU reports a trouble code.
+    ReportsTrouble(ReportsTrouble),
+    /// The machine leans by an angle.
+    Leans(Leans),
 }
 
 /// A recorded run and what it ran: all that an expectation may look at.
@@ -92,6 +108,10 @@ impl Expectation {
             Self::EvenGroundPressure(e) => e.judge(evidence),
             Self::Unsupported(e) => e.judge(evidence),
             Self::PeakLoad(e) => e.judge(evidence),
+            Self::PassesStates(e) => e.judge(evidence),
+            Self::HoldsStill(e) => e.judge(evidence),
+            Self::ReportsTrouble(e) => e.judge(evidence),
+            Self::Leans(e) => e.judge(evidence),
         }
     }
 }

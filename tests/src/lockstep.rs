@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use gateway::policy::SpecError;
-use gateway::{Gateway, GatewayConfig};
+use gateway::{Gateway, GatewayConfig, Order};
 use xt28_bus::{Bitrate, NodeId, VirtualBus, candump};
 use xt28_dbc::Outbox;
 use xt28_machine::SimTime;
@@ -24,14 +24,14 @@ use xt28_sim::STEP;
 use crate::decode::Decoder;
 use crate::digest::HashingWriter;
 use crate::recording::Recording;
-use crate::{Node, Setup, Truth};
+use crate::{GatewayOrder, Incident, Node, Setup, Truth};
 
 /// A run under way. Call [`Lockstep::tick`] until it says that the run is over.
 pub struct Lockstep<W: Write> {
     bus: VirtualBus,
     emulator: Option<(NodeId, Emulator)>,
     gateway: Option<(NodeId, Gateway)>,
-    events: Vec<(SimTime, Node)>,
+    events: Vec<(SimTime, Incident)>,
     now: SimTime,
     end: SimTime,
     outbox: Outbox,
@@ -74,6 +74,7 @@ impl<W: Write> Lockstep<W> {
         bus.enable_tap();
         let config = EmulatorConfig {
             effects: overlay.effects(),
+            mishaps: scenario.mishaps(),
             ..EmulatorConfig::new(machine.clone(), terrain.clone(), Some(*seed))
         };
         let emulator = (bus.attach("emulator"), Emulator::new(&config));
@@ -84,7 +85,7 @@ impl<W: Write> Lockstep<W> {
             bus,
             emulator: Some(emulator),
             gateway: Some(gateway),
-            events: scenario.events.iter().map(|e| (instant(e.at_s), e.kill)).collect(),
+            events: scenario.events.iter().map(|e| (instant(e.at_s), e.what)).collect(),
             now: SimTime::ZERO,
             end: instant(scenario.duration_s),
             outbox: Outbox::with_capacity(64),
@@ -157,11 +158,17 @@ impl<W: Write> Lockstep<W> {
     }
 
     fn befall(&mut self, now: SimTime) {
-        for &(at, node) in self.events.iter().filter(|(at, _)| *at <= now) {
-            debug_assert!(at <= now);
-            match node {
-                Node::Gateway => self.gateway = None,
-                Node::Emulator => self.emulator = None,
+        for &(_, incident) in self.events.iter().filter(|(at, _)| *at <= now) {
+            match incident {
+                Incident::Kill(Node::Gateway) => self.gateway = None,
+                Incident::Kill(Node::Emulator) => self.emulator = None,
+                Incident::Order(GatewayOrder::Arm) => {
+                    if let Some((_, gateway)) = &mut self.gateway {
+                        gateway.order(Order::Arm);
+                    }
+                }
+                // The emulator has it from its configuration.
+                Incident::Power(_) => {}
             }
         }
         self.events.retain(|(at, _)| *at > now);

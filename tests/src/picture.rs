@@ -79,7 +79,7 @@ impl Picture<'_> {
     fn events(&self, svg: &mut Svg, at: [f64; 2], width: f64) {
         let time = chart::time_scale(self.scenario.duration_s, at[0], width);
         for event in &self.scenario.events {
-            let what = format!("{} dies", event.kill);
+            let what = event.what.to_string();
             svg.text([time.pixel(event.at_s), at[1] + 35.0], "tick", Anchor::Middle, &what);
         }
     }

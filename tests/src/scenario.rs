@@ -1,12 +1,13 @@
 //! A scenario file: the machine, the ground, who drives, for how long, and what must hold.
 
+use std::io;
 use std::path::{Path, PathBuf};
-use std::{fmt, io};
 
+use ecu_emu::{Mishaps, SensorFault};
 use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
-use crate::{Expectation, Ground, ScenarioError};
+use crate::{Event, Expectation, Ground, Incident, ScenarioError};
 
 /// One scenario as its TOML file states it. Units are in the keys.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -42,6 +43,9 @@ pub struct Scenario {
     /// What befalls the bench on the way.
     #[serde(default, rename = "event")]
     pub events: Vec<Event>,
+    /// Sensors that fail on the way.
+    #[serde(default, rename = "fault")]
+    pub faults: Vec<SensorFault>,
     /// What must hold.
     #[serde(default, rename = "expect")]
     pub expectations: Vec<Expectation>,
@@ -54,35 +58,6 @@ pub struct Script {
     pub path: PathBuf,
     /// Its TOML.
     pub text: String,
-}
-
-/// Something that befalls the bench at an instant.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Event {
-    /// When, s from the start.
-    pub at_s: f64,
-    /// The program that dies without a word.
-    pub kill: Node,
-}
-
-/// A program on the bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Node {
-    /// The gateway.
-    Gateway,
-    /// The emulator of the two ECUs.
-    Emulator,
-}
-
-impl fmt::Display for Node {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gateway => "gateway",
-            Self::Emulator => "emulator",
-        })
-    }
 }
 
 /// The longest run a scenario may ask for, s.
@@ -135,6 +110,16 @@ impl Scenario {
         Ok(scenario)
     }
 
+    /// What goes wrong with the machine's electrics.
+    #[must_use]
+    pub fn mishaps(&self) -> Mishaps {
+        let power = self.events.iter().filter_map(|event| match event.what {
+            Incident::Power(power) => Some(power),
+            Incident::Kill(_) | Incident::Order(_) => None,
+        });
+        Mishaps { faults: self.faults.clone(), events: power.collect() }
+    }
+
     fn check(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
         let refuse = |key: &'static str, problem: String| {
             let (path, line) = (path.to_owned(), line_of(text, key));
@@ -149,6 +134,9 @@ impl Scenario {
             let problem =
                 format!("= {} lies outside the run, 0 to {}", event.at_s, self.duration_s);
             return refuse("at_s", problem);
+        }
+        if let Some(problem) = self.faults.iter().find_map(|fault| fault.check().err()) {
+            return refuse("[[fault]]", format!(": {problem}"));
         }
         self.terrain.spec.check().map_err(|fault| ScenarioError::Value {
             path: path.to_owned(),
@@ -207,7 +195,10 @@ stands-still = { below_m_s = 0.02 }
         assert_eq!(scenario.name, "ramp");
         assert_eq!(scenario.terrain.spec.ramp[0].height_m, 0.3);
         assert_eq!(scenario.terrain.to_string(), "ramp 0.3 m");
-        assert_eq!(scenario.events, [Event { at_s: 5.0, kill: Node::Gateway }]);
+        assert_eq!(
+            scenario.events,
+            [Event { at_s: 5.0, what: Incident::Kill(crate::Node::Gateway) }]
+        );
         assert_eq!(scenario.expectations.len(), 1);
     }
 

@@ -2,7 +2,7 @@
 
 use xt28_machine::{Machine, PerWheel};
 
-use crate::Series;
+use crate::{Series, Trouble};
 
 /// What the bus said during one run. Times are seconds from the start of the run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,6 +29,10 @@ pub struct Trace {
     pub arm_state: Series<EcuState>,
     /// State of the transmission ECU.
     pub drive_state: Series<EcuState>,
+    /// What the pendulum-arm ECU said is wrong.
+    pub arm_trouble: Series<Trouble>,
+    /// What the transmission ECU said is wrong.
+    pub drive_trouble: Series<Trouble>,
     /// Frames of any kind.
     pub frames: u64,
     /// Frames of ours that did not decode.

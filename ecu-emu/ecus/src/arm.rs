@@ -22,8 +22,6 @@ use self::position_control::PositionControl;
 pub use self::position_control::PositionGains;
 use self::sensing::{ArmReadings, ArmSensing};
 use self::stroke_limit::StrokeLimit;
-use crate::diagnostics::parts::arm as part;
-use crate::diagnostics::trouble_code::Fmi;
 use crate::diagnostics::{ARM, ArmData, ArmMonitor, ArmSeen, Diagnostics};
 use crate::input_check::Supply;
 use crate::life::{Commanded, Health, SELF_TEST, State};
@@ -80,6 +78,8 @@ pub struct ArmEcu {
     monitor: ArmMonitor,
     diagnostics: Diagnostics<ArmData>,
     power: Power,
+    /// Why it started anew, until it is taken into use again.
+    restarted_by: Option<Cause>,
     /// What it starts anew from.
     machine: Arc<Machine>,
 }
@@ -106,6 +106,7 @@ impl ArmEcu {
             monitor: ArmMonitor::new(&machine),
             diagnostics,
             power: Power::default(),
+            restarted_by: None,
             machine,
         }
     }
@@ -117,14 +118,10 @@ impl ArmEcu {
 
     /// Starts anew: all is forgotten but the trouble codes and the gains.
     fn restart(&mut self, cause: Cause) {
-        let mut diagnostics = self.diagnostics.clone().restart(&ARM);
-        match cause {
-            Cause::Supply => diagnostics.memory().occurred(part::SUPPLY, Fmi::FarBelow),
-            Cause::Reset => diagnostics.memory().occurred(part::CONTROLLER, Fmi::Erratic),
-        }
+        let diagnostics = self.diagnostics.clone().restart(&ARM);
         let gains = self.gains;
         let fresh = Self::boot(Arc::clone(&self.machine), diagnostics);
-        *self = Self { gains, state: SELF_TEST, ..fresh };
+        *self = Self { gains, state: SELF_TEST, restarted_by: Some(cause), ..fresh };
     }
 
     /// Sets the gains of the manual modes, arm by arm, as a service tool would.
@@ -169,6 +166,9 @@ impl ArmEcu {
             demand.map(|d| Commanded { request: d.request(), frames: self.commands.frames() });
         let before = self.state;
         self.state = before.next(health, commanded);
+        if matches!(self.state, State::Standby | State::Active) {
+            self.restarted_by = None;
+        }
         if let Some(refusal) = self.state.refusal(before, commanded) {
             self.refusal = refusal;
         }
@@ -254,6 +254,7 @@ impl ArmEcu {
             stroke_mm: &readings.stroke_mm,
             attitude_lost: self.attitude.is_lost(now),
             commands_lost: demand.is_none() && self.refusal == Refusal::Deadline,
+            restarted_by: self.restarted_by,
         };
         let found = self.monitor.step(now, pins, seen, self.diagnostics.memory());
         let needed = match demand {

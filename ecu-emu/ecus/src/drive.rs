@@ -26,8 +26,6 @@ use self::slip_trim::SlipTrim;
 use self::steering::Steering;
 pub use self::steering::SteeringGains;
 use crate::command_stream::CommandStream;
-use crate::diagnostics::parts::drive as part;
-use crate::diagnostics::trouble_code::Fmi;
 use crate::diagnostics::{DRIVE, Diagnostics, DriveData, DriveMonitor, DriveSeen};
 use crate::life::{Commanded, Health, Request, SELF_TEST, State};
 use crate::power::{Cause, Power, Running};
@@ -108,6 +106,8 @@ pub struct DriveEcu {
     monitor: DriveMonitor,
     diagnostics: Diagnostics<DriveData>,
     power: Power,
+    /// Why it started anew, until it is taken into use again.
+    restarted_by: Option<Cause>,
     /// What it starts anew from.
     machine: Arc<Machine>,
 }
@@ -137,6 +137,7 @@ impl DriveEcu {
             monitor: DriveMonitor::new(),
             diagnostics,
             power: Power::default(),
+            restarted_by: None,
             machine,
         }
     }
@@ -148,14 +149,10 @@ impl DriveEcu {
 
     /// Starts anew: all is forgotten but the trouble codes and the gains.
     fn restart(&mut self, cause: Cause) {
-        let mut diagnostics = self.diagnostics.clone().restart(&DRIVE);
-        match cause {
-            Cause::Supply => diagnostics.memory().occurred(part::SUPPLY, Fmi::FarBelow),
-            Cause::Reset => diagnostics.memory().occurred(part::CONTROLLER, Fmi::Erratic),
-        }
+        let diagnostics = self.diagnostics.clone().restart(&DRIVE);
         let gains = self.steering.gains();
         let fresh = Self::boot(Arc::clone(&self.machine), diagnostics);
-        *self = Self { state: SELF_TEST, ..fresh };
+        *self = Self { state: SELF_TEST, restarted_by: Some(cause), ..fresh };
         self.steering.set_gains(gains);
     }
 
@@ -197,6 +194,9 @@ impl DriveEcu {
         });
         let before = self.state;
         self.state = before.next(health, commanded);
+        if matches!(self.state, State::Standby | State::Active) {
+            self.restarted_by = None;
+        }
         if let Some(refusal) = self.state.refusal(before, commanded) {
             self.refusal = refusal;
         }
@@ -309,6 +309,7 @@ impl DriveEcu {
         let seen = DriveSeen {
             engine_lost: self.engine.is_lost(now),
             commands_lost: silence && self.refusal == Refusal::Deadline,
+            restarted_by: self.restarted_by,
         };
         self.monitor.step(now, pins, seen, self.diagnostics.memory())
     }

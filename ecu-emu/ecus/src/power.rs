@@ -4,6 +4,8 @@ use core::time::Duration;
 
 use xt28_machine::SimTime;
 
+use crate::diagnostics::trouble_code::Fmi;
+
 /// Below this the ECU resets: a controller for 8 to 32 V (assumed).
 pub const RESET_BELOW_MV: f64 = 8_000.0;
 /// Above this it starts again (assumed).
@@ -18,6 +20,18 @@ pub(crate) enum Cause {
     Supply,
     /// Its reset line was pulled.
     Reset,
+}
+
+impl Cause {
+    /// What it leaves in the fault memory, of the supply and of the controller, until the ECU is
+    /// taken into use again.
+    pub(crate) fn failures(cause: Option<Self>) -> [Option<Fmi>; 2] {
+        match cause {
+            Some(Self::Supply) => [Some(Fmi::FarBelow), None],
+            Some(Self::Reset) => [None, Some(Fmi::Erratic)],
+            None => [None, None],
+        }
+    }
 }
 
 /// What an ECU does in a task period.

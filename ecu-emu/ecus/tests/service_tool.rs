@@ -276,6 +276,9 @@ fn a_dip_in_motion_darkens_the_ecu_and_it_moves_nothing_before_it_rests() {
     let init = states.iter().filter(|(state, _)| *state == ArmStatusState::Init).count();
     assert_eq!((init, states.len()), (10, 60 - 25), "250 ms of boot, 100 ms of self test");
     assert_eq!(states.last(), Some(&(ArmStatusState::SafeStop, ArmStatusReason::Rearm)));
+    // SPN 168, FMI 1: active while it waits for rest, kept after.
+    let active = Tool::new(ARM).ask(&mut bench, &[0x19, 2, 0x01]).unwrap();
+    assert_eq!(active, [0x59, 2, 0xFF, 168, 0, 1, 0xAF]);
 
     for _ in 0..4 {
         bench.command(ArmTargetMode::Off, 0.0);
@@ -285,7 +288,6 @@ fn a_dip_in_motion_darkens_the_ecu_and_it_moves_nothing_before_it_rests() {
     bench.command(ArmTargetMode::ManualPosition, 200.0);
     bench.tick();
     assert_eq!(bench.arm_status().state, ArmStatusState::Active);
-    // SPN 168, FMI 1: kept, not active.
     let kept = Tool::new(ARM).ask(&mut bench, &[0x19, 2, 0x08]).unwrap();
     assert_eq!(kept, [0x59, 2, 0xFF, 168, 0, 1, 0x2E]);
 }
@@ -302,5 +304,5 @@ fn a_restart_of_the_drive_ecu_holds_the_brake_until_it_is_commanded() {
     assert!(!bench.drive_out.brake_released && !bench.drive_out.can1.frames().is_empty());
     // SPN 629, FMI 2, among what the bench's silent engine and gateway leave.
     let kept = Tool::new(DRIVE).ask(&mut bench, &[0x19, 2, 0x08]).unwrap();
-    assert!(kept[3..].chunks(4).any(|code| code == [0x75, 0x02, 0x02, 0x2E]), "{kept:02X?}");
+    assert!(kept[3..].chunks(4).any(|code| code == [0x75, 0x02, 0x02, 0xAF]), "{kept:02X?}");
 }

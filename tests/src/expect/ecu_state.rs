@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use super::Evidence;
-use crate::trace::EcuState;
+use crate::trace::{EcuState, Trace};
+use crate::trouble::Trouble;
 use crate::{Bound, Finding, Series};
 
 /// After the commands to an ECU stop, it is in a state and stays there to the end.
@@ -26,6 +27,32 @@ pub enum Ecu {
     Arms,
     /// Transmission and steering (DMS); listens to DriveTarget.
     Drive,
+}
+
+impl Ecu {
+    /// For people.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Arms => "arm ECU",
+            Self::Drive => "drive ECU",
+        }
+    }
+
+    /// What its status frames say.
+    pub(super) const fn states(self, trace: &Trace) -> &Series<EcuState> {
+        match self {
+            Self::Arms => &trace.arm_state,
+            Self::Drive => &trace.drive_state,
+        }
+    }
+
+    /// What its DM1 say.
+    pub(super) const fn trouble(self, trace: &Trace) -> &Series<Trouble> {
+        match self {
+            Self::Arms => &trace.arm_trouble,
+            Self::Drive => &trace.drive_trouble,
+        }
+    }
 }
 
 /// Commands and statuses both come every 10 ms (wire contract).
@@ -79,7 +106,7 @@ impl ReachesState {
     }
 }
 
-const fn words(state: EcuState) -> &'static str {
+pub(super) const fn words(state: EcuState) -> &'static str {
     match state {
         EcuState::Init => "init",
         EcuState::Standby => "standby",

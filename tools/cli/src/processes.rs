@@ -13,9 +13,10 @@ use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use program::{Output, Program};
+use rustix::process::Signal;
 use xt28_bus::SocketCan;
 use xt28_machine::SimTime;
-use xt28_scenarios::{Cost, Node, Recording, Setup, Truth, sha256};
+use xt28_scenarios::{Cost, GatewayOrder, Incident, Node, Recording, Setup, Truth, sha256};
 use xt28_sim::TerrainSpec;
 
 use crate::Failure;
@@ -81,9 +82,12 @@ fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<Start, F
     for event in &events {
         let due = begun + Duration::from_secs_f64(event.at_s);
         sleep_watching(due, &mut [&mut candump, &mut emulator, &mut gateway])?;
-        match event.kill {
-            Node::Gateway => gateway.kill()?,
-            Node::Emulator => emulator.kill()?,
+        match event.what {
+            Incident::Kill(Node::Gateway) => gateway.kill()?,
+            Incident::Kill(Node::Emulator) => emulator.kill()?,
+            Incident::Order(GatewayOrder::Arm) => gateway.signal(Signal::USR1)?,
+            // The emulator has it from its command line.
+            Incident::Power(_) => {}
         }
     }
     let end = begun + Duration::from_secs_f64(setup.scenario.duration_s);
@@ -125,6 +129,12 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
         let file = folder.join("effects.toml");
         fs::write(&file, setup.overlay.to_toml())?;
         add("--effects", file.display().to_string());
+    }
+    let mishaps = setup.scenario.mishaps();
+    if !mishaps.is_empty() {
+        let file = folder.join("mishaps.toml");
+        fs::write(&file, mishaps.to_toml())?;
+        add("--mishaps", file.display().to_string());
     }
     // The emulator finds the files that the terrain names beside its terrain file, which is new.
     let terrain = setup.scenario.terrain.spec.clone().beside(&env::current_dir()?);

@@ -11,6 +11,7 @@ use super::trouble_code::Fmi;
 use crate::drive::DrivePins;
 use crate::input_check::{InputCheck, Supply};
 use crate::life::{Health, PERIOD_S};
+use crate::power::Cause;
 
 /// Fault bits of the status frame.
 mod fault {
@@ -39,6 +40,8 @@ pub(crate) struct DriveSeen {
     pub(crate) engine_lost: bool,
     /// The commands stopped coming while they were carried out.
     pub(crate) commands_lost: bool,
+    /// Why the ECU has started anew, while it waits to be taken into use again.
+    pub(crate) restarted_by: Option<Cause>,
 }
 
 /// All checks of the drive ECU.
@@ -84,7 +87,9 @@ impl DriveMonitor {
         }
         let wheels_bad = self.wheels(now, &pins.wheel_hz, memory);
         let supply = Supply::read(pins.supply_mv);
-        memory.report(part::SUPPLY, supply.failure());
+        let [dark, reset] = Cause::failures(seen.restarted_by);
+        memory.report(part::SUPPLY, supply.failure().or(dark));
+        memory.report(part::CONTROLLER, reset);
         let started = *self.started.get_or_insert(now);
         let late = now.since(started) >= STREAMS_DUE;
         let away = |lost: bool| (lost && late).then_some(Fmi::UpdateRate);

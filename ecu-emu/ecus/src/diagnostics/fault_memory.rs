@@ -102,12 +102,6 @@ impl FaultMemory {
         }
     }
 
-    /// Notes a failure that is over as soon as it is known, such as a restart.
-    pub fn occurred(&mut self, part: usize, fmi: Fmi) {
-        self.report(part, Some(fmi));
-        self.report(part, None);
-    }
-
     /// All codes in the order of the table.
     pub fn entries(&self) -> impl Iterator<Item = Entry> {
         let modes =
@@ -226,7 +220,8 @@ mod tests {
     #[test]
     fn a_cycle_later_it_is_pending_and_two_later_confirmed_only() {
         let mut memory = memory();
-        memory.occurred(parts::arm::IMU, Fmi::UpdateRate);
+        memory.report(parts::arm::IMU, Some(Fmi::UpdateRate));
+        memory.report(parts::arm::IMU, None);
         memory.begin_cycle();
         assert_eq!(entry(&memory, 520_220, Fmi::UpdateRate).status, 0x6C);
         memory.report(parts::arm::IMU, None);

@@ -68,7 +68,7 @@ mod tests {
             let opening = if tick / 20 % 2 == 0 { 0.3 } else { -0.3 };
             assert!(!check.step(opening, 250.0, 500.0, TRAVEL_M));
         }
-        (0..200).for_each(|_| drop(check.step(0.3, 250.0, 500.0, TRAVEL_M)));
+        (0..200).for_each(|_| _ = check.step(0.3, 250.0, 500.0, TRAVEL_M));
         assert!(check.step(0.0, 250.0, 500.0, TRAVEL_M));
         assert!(!check.step(0.0, 254.0, 500.0, TRAVEL_M));
     }

@@ -111,6 +111,13 @@ impl Program {
         Ok(())
     }
 
+    /// Sends it a signal.
+    pub(super) fn signal(&self, signal: Signal) -> Result<(), Failure> {
+        let pid = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw);
+        let pid = pid.ok_or_else(|| format!("{} has no process number", self.name))?;
+        Ok(kill_process(pid, signal)?)
+    }
+
     /// Asks it to end, and ends it if it does not.
     pub(super) fn stop(&mut self) -> Result<(), Failure> {
         if self.ended {

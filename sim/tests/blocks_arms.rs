@@ -3,6 +3,7 @@
 mod arm_rig;
 
 use arm_rig::{ArmRig, DT_S};
+use proptest::prelude::*;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::{Block, CATALOGUE, Effect, Scope};
 use xt28_sim::{
@@ -210,6 +211,71 @@ fn outputs_are_smooth_in_every_parameter() {
                 assert!(one < bound, "{what}");
                 assert!(one < bound * 1e-3 || (two / one - 2.0).abs() < 0.01, "{what}");
             }
+        }
+    }
+}
+
+/// Taken up from one measured instant, with hidden states warmed as far as a measurement tells, the
+/// arms of a machine in motion make the measured force at once and keep to it for two seconds on the
+/// machine's own signals. Tolerance: 1 N, since the command had stood for longer than delay and lag.
+#[test]
+fn arms_taken_up_from_a_measurement_go_on_like_the_whole() {
+    let machine = Machine::xt28();
+    let dt_s = STEP.as_secs_f64();
+    let mut effects = Effects::default();
+    effects.arms = effects.arms.map(|mut arm| {
+        (arm.delay.delay_s, arm.lag.time_constant_s, arm.gas.share) = (0.1, 0.05, 1.0);
+        arm
+    });
+    let strokes = PerWheel::splat(STROKE_M);
+    let mut vehicle: Vehicle<RapierBodies> =
+        Vehicle::with(&machine, &effects, &Terrain::Flat, strokes, STEP);
+    let held = Actuation { arm_opening: PerWheel::splat(0.1), ..driven(0.0) };
+    (0..200).for_each(|_| vehicle.step(&held));
+    let mut alone = Hydraulics::new(&machine, &effects, dt_s);
+    let seen = *vehicle.state();
+    alone.states = PerWheel::from_fn(|w| {
+        let (load_n, motion) = (seen.cylinder_force_n[w], motion(&seen, w));
+        let state = alone.arms[w].resumed(&ArmInput { command: 0.1, load_n, motion }, dt_s);
+        assert!((alone.arms[w].oil_force_n(&state, &motion) - load_n).abs() < 1e-3);
+        state
+    });
+    for _ in 0..400 {
+        let before = *vehicle.state();
+        vehicle.step(&held);
+        alone.step(&held, &before, dt_s);
+        for w in Wheel::ALL {
+            let after = vehicle.state();
+            let force_n = alone.arms[w].oil_force_n(&alone.states[w], &motion(after, w));
+            assert!((force_n - after.cylinder_force_n[w]).abs() < 1.0, "{w}: {force_n}");
+        }
+    }
+}
+
+proptest! {
+    /// Whatever is true of an arm and whatever happens to it: numbers stay finite, the relief valve
+    /// bounds the oil's spring, and neither spring nor damper ever pushes the wrong way.
+    #[test]
+    fn an_arm_survives_anything_within_its_ranges(
+        shares in proptest::collection::vec(0.0..=1.0_f64, 32),
+        steps in proptest::collection::vec(
+            (-2.0..2.0_f64, -3e5..3e5_f64, -0.5..1.0_f64, -5.0..5.0_f64), 1..50),
+    ) {
+        let mut effects = Effects::default();
+        for (p, share) in arm_effects().flat_map(|e| e.parameters).zip(&shares) {
+            p.set(&mut effects, Scope::All, p.range[0] + share * (p.range[1] - p.range[0]));
+        }
+        let machine = Machine::xt28();
+        let arm = Arm::new(&machine, &effects.arms[Wheel::Fr]);
+        let mut state = arm.settled(STROKE_M, 5e4, DT_S);
+        for (command, load_n, stroke_m, stroke_rate_m_s) in steps {
+            let motion = CylinderMotion { stroke_m, stroke_rate_m_s };
+            let force = arm.step(&mut state, &ArmInput { command, load_n, motion }, 1.0, DT_S);
+            prop_assert!(force.force_n.is_finite() && force.stiffness_n_m > 0.0);
+            prop_assert!(force.damping_n_s_m > 0.0);
+            let still = CylinderMotion { stroke_m, stroke_rate_m_s: 0.0 };
+            let spring_n = arm.oil_force_n(&state, &still);
+            prop_assert!(spring_n.abs() <= machine.arms.force_max_n * (1.0 + 1e-9), "{spring_n}");
         }
     }
 }

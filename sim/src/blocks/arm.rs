@@ -58,9 +58,17 @@ impl Arm {
     /// `dt_s` s.
     #[must_use]
     pub fn settled(&self, stroke_m: f64, load_n: f64, dt_s: f64) -> ArmState {
+        let motion = CylinderMotion { stroke_m, stroke_rate_m_s: 0.0 };
+        self.resumed(&ArmInput { command: 0.0, load_n, motion }, dt_s)
+    }
+
+    /// The arm taken up in the middle of what was measured: its oil makes the load of this motion,
+    /// its valve has stood under the command for long, its seals are slack.
+    #[must_use]
+    pub fn resumed(&self, input: &ArmInput, dt_s: f64) -> ArmState {
         ArmState {
-            valve: self.valve.closed(dt_s),
-            cylinder: self.cylinder.settled(stroke_m, load_n),
+            valve: self.valve.held(input.command, dt_s),
+            cylinder: self.cylinder.carrying(input.load_n, &input.motion),
         }
     }
 

@@ -71,10 +71,12 @@ impl Cylinder {
         }
     }
 
-    /// The state at which the oil carries `force_n` at rest at `stroke_m`.
+    /// The state in which the oil carries `force_n` in this motion.
     #[must_use]
-    pub fn settled(&self, stroke_m: f64, force_n: f64) -> CylinderState {
-        CylinderState { rest_m: stroke_m + self.lock.compression_m(force_n), friction_n: 0.0 }
+    pub fn carrying(&self, force_n: f64, motion: &CylinderMotion) -> CylinderState {
+        let spring_n = force_n + self.damping_n_s_m * motion.stroke_rate_m_s;
+        let rest_m = motion.stroke_m + self.lock.compression_m(spring_n);
+        CylinderState { rest_m, friction_n: 0.0 }
     }
 
     /// Lets oil for an extending speed of `speed_m_s` in over `dt_s` s, and the seals follow.
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn oil_moves_the_rest() {
         let cylinder = nominal();
-        let mut state = cylinder.settled(0.2, 0.0);
+        let mut state = cylinder.carrying(0.0, &at(0.2));
         for _ in 0..20 {
             state = cylinder.step(state, &at(0.2), 0.3 * 0.212, DT_S);
         }
@@ -203,7 +205,7 @@ mod tests {
         gas.gas.share = 1.0;
         for effects in [ArmEffects::default(), gas] {
             let cylinder = Cylinder::new(&machine, &effects);
-            let mut state = cylinder.settled(0.5, 0.0);
+            let mut state = cylinder.carrying(0.0, &at(0.5));
             for _ in 0..10_000 {
                 state = cylinder.step(state, &at(0.5), 0.212, DT_S);
             }

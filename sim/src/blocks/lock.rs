@@ -104,6 +104,14 @@ mod tests {
     }
 
     #[test]
+    fn the_assumed_gas_is_as_stiff_as_the_lock_under_a_sixth_of_the_weight() {
+        let (linear, gas) = (with_share(0.0), with_share(1.0));
+        let [_, lock_n_m] = linear.spring(linear.compression_m(55e3));
+        let [_, gas_n_m] = gas.spring(gas.compression_m(55e3));
+        assert!((gas_n_m / lock_n_m - 1.0).abs() < 0.05, "{gas_n_m}");
+    }
+
+    #[test]
     fn a_vanishing_share_is_the_linear_lock() {
         let (nominal, little) = (with_share(0.0), with_share(1e-9));
         let (a, b) = (nominal.spring(0.03)[0], little.spring(0.03)[0]);

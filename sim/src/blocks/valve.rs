@@ -47,12 +47,14 @@ impl Valve {
         }
     }
 
-    /// A closed valve that is stepped every `dt_s` s.
+    /// A valve that has stood under `command` for long and is stepped every `dt_s` s.
     #[must_use]
-    pub fn closed(&self, dt_s: f64) -> ValveState {
+    pub fn held(&self, command: f64, dt_s: f64) -> ValveState {
+        let command = command.clamp(-1.0, 1.0);
         ValveState {
-            commands: DelayLine::new(self.delay.delay_s, dt_s, 0.0),
-            ..ValveState::default()
+            commands: DelayLine::new(self.delay.delay_s, dt_s, command),
+            pull: Lag::new(command),
+            spool: self.hysteresis.spool(0.0, command),
         }
     }
 
@@ -83,11 +85,29 @@ mod tests {
     #[test]
     fn the_nominal_valve_is_a_wire_with_a_speed() {
         let valve = Valve::new(&Machine::xt28(), &ArmEffects::default());
-        let mut state = valve.closed(0.005);
+        let mut state = valve.held(0.0, 0.005);
         for command in [0.3, -0.123, 0.0, 1.0, 7.0] {
             let spool = valve.step(&mut state, command, 0.005);
             assert_eq!(spool, command.min(1.0));
             assert_eq!(valve.speed_m_s(spool, 55e3), spool * 0.212);
+        }
+    }
+
+    #[test]
+    fn a_held_valve_goes_on_as_one_that_was_stepped_for_long() {
+        let mut effects = ArmEffects::default();
+        effects.delay.delay_s = 0.123;
+        effects.lag.time_constant_s = 0.05;
+        effects.hysteresis.width = 0.04;
+        let valve = Valve::new(&Machine::xt28(), &effects);
+        let mut stepped = valve.held(0.0, 0.005);
+        (0..1000).for_each(|_| {
+            valve.step(&mut stepped, 0.2, 0.005);
+        });
+        let mut held = valve.held(0.2, 0.005);
+        for _ in 0..100 {
+            let [a, b] = [&mut stepped, &mut held].map(|s| valve.step(s, -0.1, 0.005));
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
         }
     }
 

@@ -2,7 +2,8 @@
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
-/// The gas of one arm's accumulator; its law is [`crate::Accumulator`]'s.
+/// The gas of one arm's accumulator; its law is [`crate::Accumulator`]'s. The size assumed is as stiff
+/// as the linear lock where an arm carries a sixth of the weight, and is never empty under it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccumulatorGas {
     /// Share of the force that the gas makes; the rest is the linear lock's.
@@ -17,7 +18,7 @@ pub struct AccumulatorGas {
 
 impl Default for AccumulatorGas {
     fn default() -> Self {
-        Self { share: 0.0, precharge_pa: 2.5e6, volume_m3: 0.75e-3, exponent: 1.3 }
+        Self { share: 0.0, precharge_pa: 1.5e6, volume_m3: 1.0e-3, exponent: 1.3 }
     }
 }
 
@@ -37,14 +38,14 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         },
         Parameter {
             name: "precharge_pa",
-            neutral: 2.5e6,
-            tolerance: 1.0e6,
+            neutral: 1.5e6,
+            tolerance: 0.5e6,
             range: [0.5e6, 15.0e6],
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.precharge_pa),
         },
         Parameter {
             name: "volume_m3",
-            neutral: 0.75e-3,
+            neutral: 1.0e-3,
             tolerance: 0.3e-3,
             range: [0.1e-3, 5.0e-3],
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.volume_m3),

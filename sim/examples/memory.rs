@@ -10,7 +10,9 @@ use std::alloc::System;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Actuation, Bodies, Effects, Plant, RapierBodies, STEP, Terrain, Vehicle};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Plant, RapierBodies, ReducedBodies, STEP, Terrain, Vehicle,
+};
 
 #[global_allocator]
 static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -26,6 +28,7 @@ fn main() -> Result<(), String> {
     println!("\n| engine | KiB an environment | allocations a step |");
     println!("|---|---|---|");
     measure::<RapierBodies>("rapier", &ground);
+    measure::<ReducedBodies>("reduced", &ground);
     Ok(())
 }
 

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Actuation, Bodies, Effects, Plant, RapierBodies, Terrain, Vehicle};
+use xt28_sim::{Actuation, Bodies, Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
 
 /// Steps per second of simulated time.
 const RATE_HZ: u32 = 120;
@@ -36,6 +36,7 @@ fn main() -> Result<(), String> {
     println!("| engine | threads | steps/s | efficiency | processor us/step |");
     println!("|---|---|---|---|---|");
     measure::<RapierBodies>("rapier", &ground, cores);
+    measure::<ReducedBodies>("reduced", &ground, cores);
     Ok(())
 }
 

@@ -12,7 +12,7 @@ mod manoeuvre;
 
 use manoeuvre::{Manoeuvre, Sample, yardstick};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Bodies, Effects, RapierBodies, STEP, Terrain, Vehicle};
+use xt28_sim::{Bodies, Effects, RapierBodies, ReducedBodies, STEP, Terrain, Vehicle};
 
 /// Steps per second of the plant as the bench runs it.
 const RATE_HZ: u32 = 200;
@@ -48,16 +48,19 @@ const DRIVE: Bounds = [
 #[test]
 fn settling_agrees_with_mujoco() {
     agrees::<RapierBodies>("settle", &SETTLE);
+    agrees::<ReducedBodies>("settle", &SETTLE);
 }
 
 #[test]
 fn a_straight_drive_agrees_with_mujoco() {
     agrees::<RapierBodies>("straight", &DRIVE);
+    agrees::<ReducedBodies>("straight", &DRIVE);
 }
 
 #[test]
 fn a_bend_agrees_with_mujoco() {
     agrees::<RapierBodies>("turn", &DRIVE);
+    agrees::<ReducedBodies>("turn", &DRIVE);
 }
 
 #[test]

@@ -14,12 +14,12 @@ use std::time::Duration;
 use manoeuvre::{Manoeuvre, Sample, yardstick};
 use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Bodies, Effects, Plant, RapierBodies, Terrain, Vehicle};
+use xt28_sim::{Bodies, Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
 
 const USAGE: &str =
     "usage: trajectory engines | grid TERRAIN | start TERRAIN | run ENGINE MANOEUVRE HZ [TERRAIN]";
 /// Our engines, by name.
-const ENGINES: [&str; 1] = ["rapier"];
+const ENGINES: [&str; 2] = ["rapier", "reduced"];
 
 fn main() -> Result<(), String> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -34,6 +34,7 @@ fn main() -> Result<(), String> {
             let ground = terrain(ground.first().unwrap_or(&manoeuvre.terrain.as_str()))?;
             match engine {
                 "rapier" => run::<RapierBodies>(&manoeuvre, &ground, rate_hz),
+                "reduced" => run::<ReducedBodies>(&manoeuvre, &ground, rate_hz),
                 other => return Err(format!("no engine `{other}`; {USAGE}")),
             }
         }

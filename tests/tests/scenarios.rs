@@ -47,6 +47,7 @@ scenarios! {
     ramp: "ramp",
     ramp_locked: "ramp-locked",
     ramp_automatic: "ramp-automatic",
+    ramp_automatic_late: "ramp-automatic-late",
     cross_slope: "cross-slope",
     bumpy_field: "bumpy-field",
     bumpy_field_locked: "bumpy-field-locked",

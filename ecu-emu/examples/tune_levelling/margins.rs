@@ -71,11 +71,11 @@ pub(crate) fn loop_gain(machine: &Machine, direction: &[f64; 6], delay_ticks: us
     for tick in 0..ticks(SETTLE_S + WINDOW_S) {
         let t_s = f64::from(tick) * TICK_S;
         let injected = injection(t_s) * norm.recip().max(1.0);
-        let openings = rig.tick(direction.map(|d| d * injected));
+        let opening = rig.tick(direction.map(|d| d * injected));
         if tick < ticks(SETTLE_S) {
             continue;
         }
-        let (u, e) = (along(&openings.ecu), along(&openings.ecu) + injected);
+        let (u, e) = (along(&opening), along(&opening) + injected);
         for (k, harmonic) in HARMONICS.into_iter().enumerate() {
             let (sin, cos) = (frequency_rad_s(harmonic) * t_s).sin_cos();
             answer[k] = [answer[k][0] + u * cos, answer[k][1] - u * sin];

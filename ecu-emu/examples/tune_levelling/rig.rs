@@ -22,14 +22,6 @@ pub(crate) struct Rig {
     idle: Actuation,
 }
 
-/// Valve openings of one tick, + extends.
-pub(crate) struct Openings {
-    /// What the ECU's currents open.
-    pub(crate) ecu: PerWheel<f64>,
-    /// What reached the plant: with the disturbance, and late.
-    pub(crate) plant: PerWheel<f64>,
-}
-
 impl Rig {
     /// Arms at `stroke_m`, settled for a second, valves `delay_ticks` late.
     pub(crate) fn new(machine: &Machine, stroke_m: PerWheel<f64>, delay_ticks: usize) -> Self {
@@ -49,8 +41,9 @@ impl Rig {
         }
     }
 
-    /// One tick of 10 ms with `disturbance` added to the openings.
-    pub(crate) fn tick(&mut self, disturbance: PerWheel<f64>) -> Openings {
+    /// One tick of 10 ms with `disturbance` added to the openings on their way to the plant; gives
+    /// what the ECU's currents open, + extends.
+    pub(crate) fn tick(&mut self, disturbance: PerWheel<f64>) -> PerWheel<f64> {
         let s = *self.plant.state();
         let pins = ArmPins {
             stroke_mv: s.stroke_m.map(pins::stroke_mv),
@@ -76,7 +69,7 @@ impl Rig {
         for _ in 0..ArmTarget::PERIOD.as_nanos() / STEP.as_nanos() {
             self.plant.step(&Actuation { arm_opening: plant, ..self.idle });
         }
-        Openings { ecu, plant }
+        ecu
     }
 
     /// What is true of the plant.

@@ -9,8 +9,10 @@ impl TerrainSpec {
     /// The ground.
     ///
     /// # Errors
-    /// [`TerrainError::Read`] or [`TerrainError::HeightMap`] for a file that it names.
+    /// [`TerrainError::Read`] or [`TerrainError::HeightMap`] for a file that it names,
+    /// [`TerrainError::Layer`] for what [`Self::check`] refuses.
     pub fn build(&self) -> Result<Terrain, TerrainError> {
+        self.check()?;
         let plane = self.slope.as_ref().map(Slope::plane);
         if self.is_plane() {
             return Ok(plane.map_or(Terrain::Flat, Terrain::Plane));
@@ -39,6 +41,7 @@ impl TerrainSpec {
     /// # Errors
     /// As [`Self::build`].
     pub fn build_map(&self, ground: &Terrain) -> Result<Terrain, TerrainError> {
+        self.check()?;
         let map = &self.map;
         if map.is_exact() {
             return Ok(ground.clone());

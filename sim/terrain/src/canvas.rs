@@ -16,6 +16,7 @@ impl Canvas {
     /// Level ground at height zero.
     #[allow(clippy::cast_possible_truncation)]
     pub(crate) fn new(extent: Extent) -> Self {
+        assert_eq!(extent.check(), Ok(()), "no grid can lie there");
         let [columns, rows] = extent.size();
         let first = [extent.x_m[0], extent.y_m[0]].map(|m| (m * PER_M).round() as i64);
         Self { first, columns, rows, height_m: vec![0.0; columns * rows] }

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::Fault;
+
 /// Why a terrain was refused.
 #[derive(Debug, thiserror::Error)]
 pub enum TerrainError {
@@ -27,6 +29,9 @@ pub enum TerrainError {
         /// What is wrong there, and what would be right.
         problem: String,
     },
+    /// A layer is none that can be; of a spec that was not read from a file.
+    #[error("terrain {0}")]
+    Layer(#[from] Fault),
     /// A file is no height map, or not one that can be driven on.
     #[error("{path}: {problem}")]
     HeightMap {

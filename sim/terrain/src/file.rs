@@ -93,7 +93,9 @@ fn read(text: &str) -> Result<TerrainSpec, Problem> {
     };
     let mut spec = TerrainSpec::default();
     match kind.get_ref().as_str() {
-        "flat" => drop(layer::<Nothing>(text)?),
+        "flat" => {
+            layer::<Nothing>(text)?;
+        }
         "slope" => spec.slope = Some(layer(text)?),
         "ramp" => spec.ramp.push(layer(text)?),
         "step" => spec.step.push(layer(text)?),

@@ -8,6 +8,10 @@ use crate::search::Search;
 
 /// Most contacts of one ball.
 const POINTS_MAX: usize = 4;
+/// A centre further from the origin than this, along any axis, is no place, m.
+const FAR_M: f64 = 1e6;
+/// The largest ball that is asked about, m: bounds the cells of one search.
+const REACH_MAX_M: f64 = 100.0;
 /// Nearer than this two minima are one, m.
 const SAME_POINT_M: f64 = 0.05;
 /// A point of the ground nearest to a ball's centre.
@@ -64,7 +68,8 @@ impl Minima {
 impl Terrain {
     /// The points of the ground nearest to `centre_m`, none further than `reach_m`.
     ///
-    /// A centre under ground has one: straight above it.
+    /// A centre under ground has one: straight above it. A centre that is not within 1000 km of the
+    /// origin has none, as one that is no number; a reach counts up to 100 m.
     #[must_use]
     pub fn nearest(&self, centre_m: [f64; 3], reach_m: f64) -> Minima {
         let mut found = Minima::NONE;
@@ -77,6 +82,10 @@ impl Terrain {
     /// may come twice.
     pub fn each_minimum(&self, centre_m: [f64; 3], reach_m: f64, mut keep: impl FnMut(Nearest)) {
         let [x, y, z] = centre_m;
+        if !centre_m.iter().all(|m| m.abs() <= FAR_M) {
+            return;
+        }
+        let reach_m = reach_m.min(REACH_MAX_M);
         match self {
             Self::Flat => {
                 if z <= reach_m {
@@ -91,9 +100,9 @@ impl Terrain {
             }
             Self::Grid(grid) => {
                 let ground_m = grid.height_m(x, y);
-                if z > ground_m {
+                if z > ground_m && reach_m >= 0.0 {
                     Search::new(grid, centre_m, reach_m, keep).run();
-                } else {
+                } else if z - ground_m <= reach_m {
                     let point_m = [x, y, ground_m];
                     keep(Nearest { point_m, distance_m: z - ground_m });
                 }

@@ -101,6 +101,14 @@ fn a_map_may_lie_off_the_ground() {
 }
 
 #[test]
+fn a_spec_made_in_code_is_checked_when_it_is_built() {
+    let mut spec = spec("lesson-1.toml");
+    spec.perlin[0].octaves = 99;
+    let error = spec.build().unwrap_err().to_string();
+    assert_eq!(error, "terrain [perlin]: octaves must be 1 to 8");
+}
+
+#[test]
 fn the_documentation_shows_a_terrain_that_builds() {
     let text: String = include_str!("../src/lib.rs")
         .lines()

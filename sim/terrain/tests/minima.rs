@@ -138,6 +138,23 @@ proptest! {
     }
 
     #[test]
+    fn no_number_breaks_it(
+        x in any::<f64>(), y in any::<f64>(), z in any::<f64>(), reach_m in -1.0..2.0_f64,
+        near in [-3.0..3.0_f64, -3.0..3.0_f64, -1.0..1.0_f64],
+    ) {
+        for terrain in [rough(&[0.0, 0.2], [0.1, 0.0]), Terrain::Flat] {
+            for centre in [[x, y, z], [x, near[1], near[2]], [near[0], near[1], z], near] {
+                for point in terrain.nearest(centre, reach_m).points() {
+                    prop_assert!(point.distance_m <= reach_m);
+                    prop_assert!(point.point_m.iter().all(|m| m.is_finite()));
+                }
+                let _ = terrain.height_m(centre[0], centre[1]);
+                let _ = terrain.rest_m(centre[0], centre[1], reach_m.abs());
+            }
+        }
+    }
+
+    #[test]
     fn a_resting_ball_touches_and_cuts_nothing(
         heights in prop::collection::vec(0.0..0.2_f64, 31 * 25),
         x in -1.8..1.8_f64, y in -1.6..1.6_f64,

@@ -160,7 +160,7 @@ impl Boulders {
         if !between(self.height_m, 0.0, 5.0) {
             return Err("height_m must be [least, greatest], 0 to 5 m");
         }
-        if [self.clear.x_m, self.clear.y_m].iter().any(|[from, to]| !(from <= to)) {
+        if ![self.clear.x_m, self.clear.y_m].iter().all(|[from, to]| from <= to) {
             return Err("clear must be x_m = [from, to], y_m = [from, to]");
         }
         Ok(())

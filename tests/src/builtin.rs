@@ -27,7 +27,11 @@ pub const BUILTIN: &[(&str, &str)] = texts!(
     "bumpy-field",
     "bumpy-field-locked",
     "kerb",
-    "command-loss"
+    "command-loss",
+    "brown-out",
+    "reboot",
+    "broken-wire",
+    "false-stroke"
 );
 
 /// Name and text of the scripts that they play.
@@ -42,6 +46,8 @@ const SCRIPTS: &[(&str, &str)] = texts!(
     "bumpy-field.script",
     "bumpy-field-locked.script",
     "kerb.script",
+    "brown-out.script",
+    "false-stroke.script"
 );
 
 /// The text of a built-in script.

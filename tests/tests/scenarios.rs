@@ -53,6 +53,10 @@ scenarios! {
     bumpy_field_locked: "bumpy-field-locked",
     kerb: "kerb",
     command_loss: "command-loss",
+    brown_out: "brown-out",
+    reboot: "reboot",
+    broken_wire: "broken-wire",
+    false_stroke: "false-stroke",
 }
 
 #[test]

@@ -232,7 +232,8 @@ impl ArmEcu {
         };
         PerWheel::from_fn(|wheel: Wheel| {
             let control = &mut self.control[wheel];
-            if let Some(target_mm) = target_mm[wheel] {
+            // An arm whose stroke is in doubt waits where it is.
+            if let Some(target_mm) = target_mm[wheel].filter(|_| self.monitor.trusts(wheel)) {
                 control.step(&self.gains[wheel], target_mm, readings.stroke_mm[wheel])
             } else {
                 control.reset();

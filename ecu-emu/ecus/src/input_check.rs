@@ -62,6 +62,11 @@ impl InputCheck {
         if self.leaps(mv) { (Health::Broken, Some(Fmi::ChangeRate)) } else { (Health::Good, None) }
     }
 
+    /// Whether the input was out of range at its last test.
+    pub(crate) fn is_doubtful(&self) -> bool {
+        self.doubted_since.is_some()
+    }
+
     /// True from three leaps close together until the input has been quiet for a while.
     fn leaps(&mut self, mv: f64) -> bool {
         let Some(step_max_mv) = self.step_max_mv else { return false };

@@ -60,6 +60,22 @@ fn a_broken_wire_is_told_within_its_debounce_and_by_name() {
 }
 
 #[test]
+fn an_arm_in_doubt_waits_while_the_others_go_on() {
+    let mut bench = Bench::new();
+    for tick in 0..20 {
+        if tick == 10 {
+            bench.arm_pins.stroke_mv[Wheel::Fr] = 5_000.0;
+        }
+        bench.command(ArmTargetMode::ManualPosition, 200.0);
+        bench.tick();
+        let moves = |wheel| bench.arm_out.solenoid_b_ma[wheel] > 0.0;
+        assert!(moves(Wheel::Fl) && bench.arm_status().state == ArmStatusState::Active);
+        assert_eq!(moves(Wheel::Fr), tick < 10, "tick {tick}");
+        assert_eq!(bench.arm_out.solenoid_a_ma, PerWheel::splat(0.0), "nor back");
+    }
+}
+
+#[test]
 fn more_than_one_code_goes_by_broadcast_and_dm2_by_connection() {
     let mut bench = Bench::new();
     bench.run(10);

@@ -63,9 +63,12 @@ const CHECKS: &[Check] = &[
     },
 ];
 
-/// How many checks [`run_all`] has, the socket tests counted as one.
+/// Test programs that use a real bus where `XT28_VCAN` names one: package and test.
+const TESTS: &[[&str; 2]] = &[["xt28-bus", "socket_can"], ["ecu-emu", "service_tool"]];
+
+/// How many checks [`run_all`] has, each test program counted as one.
 #[allow(clippy::cast_possible_truncation)] // a handful
-const COUNT: u32 = CHECKS.len() as u32 + 1;
+const COUNT: u32 = (CHECKS.len() + TESTS.len()) as u32;
 
 /// Longest wall time of one check, s. In virtual time nothing else would end a run that hangs.
 const TIMEOUT_S: &str = "600";
@@ -102,18 +105,20 @@ pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Report {
             }
         }
     }
-    let mut socket_tests = bench.vcan(&["--"]);
-    socket_tests.arg(&bench.socket_tests).arg("--nocapture").env("XT28_VCAN", "vcan0");
-    let socket_tests = harness(&mut socket_tests);
-    report.tally += socket_tests.tally;
-    report.failures.extend(socket_tests.failures);
+    for program in &bench.tests {
+        let mut tests = bench.vcan(&["--"]);
+        tests.arg(program).arg("--nocapture").env("XT28_VCAN", "vcan0");
+        let tests = harness(&mut tests);
+        report.tally += tests.tally;
+        report.failures.extend(tests.failures);
+    }
     report
 }
 
 /// What the checks run with: programs built outside, since a guest is slow at compiling.
 struct Bench {
     xt28: PathBuf,
-    socket_tests: PathBuf,
+    tests: Vec<PathBuf>,
     cache: PathBuf,
     logs: PathBuf,
 }
@@ -125,16 +130,15 @@ impl Bench {
         Guest::prepare(&cache)?;
         let programs = ["--package=xt28", "--package=ecu-emu", "--package=gateway", "--bins"];
         let built = build(&workspace.root, &[&["build"][..], &programs].concat())?;
-        let tests = ["test", "--no-run", "--package=xt28-bus", "--test=socket_can"];
-        let tested = build(&workspace.root, &tests)?;
+        let tests = TESTS.iter().map(|[package, test]| {
+            let (package, of) = (format!("--package={package}"), format!("--test={test}"));
+            let built = build(&workspace.root, &["test", "--no-run", &package, &of])?;
+            executable(&built, test)
+        });
+        let tests = tests.collect::<Outcome<Vec<_>>>()?;
         let logs = workspace.target.join("vcan-scenarios");
         fs::create_dir_all(&logs)?;
-        Ok(Self {
-            xt28: executable(&built, "xt28")?,
-            socket_tests: executable(&tested, "socket_can")?,
-            cache,
-            logs,
-        })
+        Ok(Self { xt28: executable(&built, "xt28")?, tests, cache, logs })
     }
 
     /// This very program as `vcan`, with further arguments.

@@ -1,6 +1,6 @@
 //! Watches the pendulum-arm ECU's inputs, and tells control and fault memory what it finds.
 
-use xt28_machine::{Machine, PerWheel, SimTime};
+use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
 
 use super::STREAMS_DUE;
 use super::fault_memory::FaultMemory;
@@ -81,6 +81,11 @@ impl ArmMonitor {
     /// Notes what the valves are told, for the next task period's judgement.
     pub(crate) const fn commanded(&mut self, opening: PerWheel<f64>) {
         self.opening = opening;
+    }
+
+    /// Whether the stroke of an arm was in range at the last task period.
+    pub(crate) fn trusts(&self, wheel: Wheel) -> bool {
+        !self.strokes[wheel].is_doubtful()
     }
 
     /// One task period.

@@ -5,7 +5,7 @@
 //! foot of the perpendicular lies in it. These conditions are exact, and each is a product or two.
 //! Blocks and cells of the grid that lie too deep for the ball are passed over by their top.
 
-use crate::grid::{BLOCK, SPACING_M};
+use crate::grid::{BLOCK, PER_M, SPACING_M};
 use crate::{Grid, Nearest};
 
 /// Slack of the conditions, m²: on the border between two features, both may hold, never neither.
@@ -130,7 +130,7 @@ impl<'a, K: FnMut(Nearest)> Search<'a, K> {
     fn triangles(&mut self, cell: Cell) {
         let Cell { x, y, corner, right, above, opposite } = cell;
         let mut triangle = |rise_x: f64, rise_y: f64, low: bool| {
-            let (a, b) = (rise_x / SPACING_M, rise_y / SPACING_M);
+            let (a, b) = (rise_x * PER_M, rise_y * PER_M);
             // Over the plane, and the square of its normal (-a, -b, 1); the foot is
             // (a, b, -1) over / normal2.
             let (over, normal2) = (a * x + b * y - corner, a * a + b * b + 1.0);
@@ -206,7 +206,7 @@ fn gap2(low: f64, side: f64) -> f64 {
     gap * gap
 }
 
-/// The larger of two finite numbers; `f64::max` also minds NaN, which takes four times as long.
+/// The larger of two finite numbers: one instruction, where `f64::max` minds NaN as well.
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
@@ -235,7 +235,7 @@ impl View<'_> {
     fn cells_within(&self, disc_m: f64) -> [[usize; 2]; 2] {
         std::array::from_fn(|axis| {
             let [low, high] = self.cells[axis];
-            let at = |m: f64| ((m - self.first_m[axis]) / SPACING_M) as usize;
+            let at = |m: f64| ((m - self.first_m[axis]) * PER_M) as usize;
             [low.max(at(-disc_m)), high.min(at(disc_m))]
         })
     }

@@ -156,10 +156,14 @@ impl ReducedBodies {
     fn note_forces(&mut self, contacts: &[Contact], dt_s: f64) {
         self.ground_force_n = PerWheel::splat(0.0);
         self.chassis_force_n = 0.0;
+        self.search.stuck = [false; 6];
         for contact in contacts {
             let force = contact.impulse(contact.velocity) / dt_s;
             match contact.body {
-                Body::Wheel(i) => self.ground_force_n[Wheel::ALL[i]] += force.z,
+                Body::Wheel(i) => {
+                    self.ground_force_n[Wheel::ALL[i]] += force.z;
+                    self.search.stuck[i] |= contact.sticks();
+                }
                 Body::Frame(_) => self.chassis_force_n += force.length(),
             }
         }

@@ -42,6 +42,8 @@ pub(super) struct Contact {
     /// Impulse that sideways velocity makes while it sticks, kg.
     stick: f64,
     friction: f64,
+    /// Taken to stick however much force that needs: a first guess.
+    pub(super) held: bool,
     /// Velocity of the point at the solver's present guess, m/s.
     pub(super) velocity: DVec3,
     /// What the solver's present step would add to it, m/s.
@@ -60,6 +62,7 @@ impl Contact {
         slope: 0.0,
         stick: 0.0,
         friction: 0.0,
+        held: false,
         velocity: DVec3::ZERO,
         step: DVec3::ZERO,
         matrix: DMat3::ZERO,
@@ -97,8 +100,16 @@ impl Contact {
         let slip = velocity - self.normal * away;
         let most = self.friction * normal;
         let sideways = self.stick * slip.length();
-        let share = if sideways > most { most / sideways } else { 1.0 };
+        let share = if sideways > most && !self.held { most / sideways } else { 1.0 };
         self.normal * normal - slip * (self.stick * share)
+    }
+
+    /// Whether it is closed, and sideways within its friction.
+    pub(super) fn sticks(&self) -> bool {
+        let away = self.normal.dot(self.velocity);
+        let normal = self.push - self.slope * away;
+        let slip = self.velocity - self.normal * away;
+        normal > 0.0 && self.stick * slip.length() <= self.friction * normal
     }
 
     /// Minus the derivative of [`Self::impulse`], kg. With `coupled` false, sliding friction is
@@ -116,7 +127,7 @@ impl Contact {
         let mut across = outer(self.normal, self.normal);
         let along_normal = across * self.slope;
         across = DMat3::IDENTITY - across;
-        if self.stick * speed <= most {
+        if self.stick * speed <= most || self.held {
             return along_normal + across * self.stick;
         }
         let direction = slip / speed;

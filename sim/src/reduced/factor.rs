@@ -13,22 +13,14 @@ use super::spatial::{
 };
 use super::tree::Tree;
 
-/// What stiffens the tree within a step, beside the bodies' inertias; all times the step, kg and kg m².
+/// The matrix to factor: the bodies' inertias, and what stiffens them within a step.
 #[derive(Debug)]
-pub(super) struct Stiffening {
-    /// On each hinge's own rate: implicit springs, dampers, brakes. The first six stay zero.
+pub(super) struct Matrix {
+    /// On each hinge's own rate: implicit springs, dampers, brakes, times the step, kg m². The first
+    /// six stay zero.
     pub(super) hinge: Generalized,
-    /// On each wheel's twist: its contacts.
-    pub(super) wheel: [Spatial6; 6],
-    /// On each frame's twist: contacts of the hull; `None` while none touches.
-    pub(super) frame: Option<[Spatial6; 3]>,
-}
-
-impl Stiffening {
-    /// None.
-    pub(super) const fn new() -> Self {
-        Self { hinge: [0.0; FREEDOMS], wheel: [ZERO6; 6], frame: None }
-    }
+    /// On the bodies' twists: inertias and contacts.
+    pub(super) bodies: BodyInertias<Spatial6>,
 }
 
 /// A hinge that was eliminated.
@@ -53,35 +45,24 @@ impl Factors {
         Self { pivot: [none; FREEDOMS - 6], root: ZERO6 }
     }
 
-    /// `None` if the matrix has no positive pivots, which friction that jams an arm can do.
-    pub(super) fn factor(
-        &mut self,
-        pose: &Pose,
-        inertias: &BodyInertias<Spatial6>,
-        with: &Stiffening,
-    ) -> Option<()> {
+    /// Factors a matrix, which is used up. `None` if it has no positive pivots, which friction that
+    /// jams an arm can do.
+    pub(super) fn factor(&mut self, pose: &Pose, matrix: &mut Matrix) -> Option<()> {
+        let Matrix { hinge, bodies: BodyInertias { frame, arm, wheel } } = matrix;
         let pivot = &mut self.pivot;
-        let mut frame = inertias.frame;
-        if let Some(touching) = &with.frame {
-            for (frame, touching) in frame.iter_mut().zip(touching) {
-                add6(frame, touching);
-            }
-        }
         for i in 0..6 {
-            let mut body = inertias.wheel[i];
-            add6(&mut body, &with.wheel[i]);
-            let hinge = WHEELS + i;
-            pivot[hinge - 6] = eliminate(&mut body, &pose.arm[i].wheel_axis, with.hinge[hinge])?;
-            add6(&mut body, &inertias.arm[i]);
-            let hinge = ARMS + i;
-            pivot[hinge - 6] = eliminate(&mut body, &pose.arm[i].arm_axis, with.hinge[hinge])?;
-            add6(&mut frame[Tree::frame_of(i)], &body);
+            let (body, k) = (&mut wheel[i], WHEELS + i);
+            pivot[k - 6] = eliminate(body, &pose.arm[i].wheel_axis, hinge[k])?;
+            add6(body, &arm[i]);
+            let k = ARMS + i;
+            pivot[k - 6] = eliminate(body, &pose.arm[i].arm_axis, hinge[k])?;
+            add6(&mut frame[Tree::frame_of(i)], body);
         }
         for i in (0..2).rev() {
-            let mut body = frame[i + 1];
-            let hinge = JOINTS + i;
-            pivot[hinge - 6] = eliminate(&mut body, &pose.joint_axis[i], with.hinge[hinge])?;
-            add6(&mut frame[i], &body);
+            let k = JOINTS + i;
+            let (ahead, behind) = frame.split_at_mut(i + 1);
+            pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k])?;
+            add6(&mut ahead[i], &behind[0]);
         }
         self.root = frame[0];
         factor_root(&mut self.root)
@@ -135,7 +116,6 @@ impl Factors {
 }
 
 /// Takes a hinge out of a body's matrix; what is left is what its parent feels.
-#[inline]
 fn eliminate(body: &mut Spatial6, axis: &Spatial, stiffening: f64) -> Option<Pivot> {
     let column = apply(body, axis);
     let row = apply_transposed(body, axis);

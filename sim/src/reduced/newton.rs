@@ -8,9 +8,9 @@
 //! so that what comes out is as smooth in every parameter as the laws are.
 
 use super::contact::{Body, Contact};
-use super::factor::{Factors, Stiffening};
+use super::factor::{Factors, Matrix};
 use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
-use super::spatial::{Spatial, Spatial6, ZERO6, add, add6, at_point, dot, velocity_at, wrench_at};
+use super::spatial::{Spatial, Spatial6, add, add_at_point, dot, velocity_at, wrench_at};
 use super::tree::Tree;
 
 /// Residual at which the balance holds, as a velocity of the whole machine, m/s.
@@ -49,36 +49,46 @@ pub(super) struct Convergence {
 
 /// What an iteration writes over that of the last.
 struct Work {
-    stiffening: Stiffening,
+    matrix: Matrix,
     factors: Factors,
 }
 
 impl Balance<'_> {
     /// Moves `rate` from the step's start to its end. Contacts keep their final velocities.
+    ///
+    /// Contacts that are `held` are let go after the first iteration. Those that stuck in the last
+    /// step should be: on uneven ground they start this one with a creep that reads as sliding.
     pub(super) fn solve(&self, rate: &mut Generalized, contacts: &mut [Contact]) -> Convergence {
         let mut smooth = self.lack;
-        let mut work = Work { stiffening: Stiffening::new(), factors: Factors::new() };
+        let matrix = Matrix { hinge: self.hinge, bodies: self.inertias.clone() };
+        let mut work = Work { matrix, factors: Factors::new() };
         self.set_velocities(rate, contacts);
         let mut report = Convergence::default();
         for iteration in 0..ITERATIONS_MAX {
             let residual = self.residual(&smooth, rate, contacts);
             report.residual_m_s = self.size_m_s(&residual);
             report.iterations = iteration;
-            if report.residual_m_s < TOLERANCE_M_S {
+            let held = contacts.iter().any(|contact| contact.held);
+            if report.residual_m_s < TOLERANCE_M_S && !held {
                 break;
             }
             let coupled = iteration < CAUTIOUS_FROM;
             let Some(step) = self.direction(&residual, rate, contacts, coupled, &mut work) else {
                 break;
             };
-            let change = self.smooth_change(&residual, &step, &work.stiffening, contacts);
-            let share = self.search(&smooth, &change, &step, rate, contacts);
+            let change = self.smooth_change(&residual, &step, &work.matrix.hinge, contacts);
+            let share = if held {
+                1.0
+            } else {
+                self.search((&residual, &smooth), &change, &step, rate, contacts)
+            };
             for k in 0..FREEDOMS {
                 rate[k] += share * step[k];
                 smooth[k] += share * change[k];
             }
             for contact in contacts.iter_mut() {
                 contact.velocity += contact.step * share;
+                contact.held = false;
             }
         }
         report
@@ -93,8 +103,8 @@ impl Balance<'_> {
         coupled: bool,
         work: &mut Work,
     ) -> Option<Generalized> {
-        self.stiffen(rate, contacts, coupled, &mut work.stiffening);
-        if work.factors.factor(self.pose, self.inertias, &work.stiffening).is_some() {
+        self.fill(&mut work.matrix, rate, contacts, coupled);
+        if work.factors.factor(self.pose, &mut work.matrix).is_some() {
             let step = work.factors.solve(self.pose, &residual.map(|r| -r));
             if !coupled || dot20(&step, residual) < 0.0 {
                 self.set_steps(&step, contacts);
@@ -105,26 +115,20 @@ impl Balance<'_> {
         if coupled { self.direction(residual, rate, contacts, false, work) } else { None }
     }
 
-    fn stiffen(
-        &self,
-        rate: &Generalized,
-        contacts: &mut [Contact],
-        coupled: bool,
-        out: &mut Stiffening,
-    ) {
+    /// Writes the derivative of the residual; the contacts keep their part of it.
+    fn fill(&self, out: &mut Matrix, rate: &Generalized, contacts: &mut [Contact], coupled: bool) {
         out.hinge = self.hinge;
-        out.wheel = [ZERO6; 6];
-        out.frame = None;
+        out.bodies.clone_from(self.inertias);
         for i in 0..6 {
             out.hinge[WHEELS + i] += self.brake_slope(i, rate);
         }
         for contact in contacts {
             contact.matrix = contact.slope(contact.velocity, coupled);
-            let matrix = at_point(&contact.matrix, contact.at);
-            match contact.body {
-                Body::Wheel(i) => add6(&mut out.wheel[i], &matrix),
-                Body::Frame(i) => add6(&mut out.frame.get_or_insert([ZERO6; 3])[i], &matrix),
-            }
+            let body = match contact.body {
+                Body::Wheel(i) => &mut out.bodies.wheel[i],
+                Body::Frame(i) => &mut out.bodies.frame[i],
+            };
+            add_at_point(body, &contact.matrix, contact.at);
         }
     }
 
@@ -134,13 +138,13 @@ impl Balance<'_> {
         &self,
         residual: &Generalized,
         step: &Generalized,
-        stiffening: &Stiffening,
+        hinge: &Generalized,
         contacts: &[Contact],
     ) -> Generalized {
         let mut change =
             self.generalised(contacts.iter().map(|c| (c.body, wrench_at(c.matrix * c.step, c.at))));
         for k in 0..FREEDOMS {
-            let brake = stiffening.hinge[k] - self.hinge[k];
+            let brake = hinge[k] - self.hinge[k];
             change[k] = -residual[k] - change[k] - brake * step[k];
         }
         change
@@ -168,7 +172,7 @@ impl Balance<'_> {
     /// In a convex problem that is the exact minimum along the line, and makes Newton's method safe.
     fn search(
         &self,
-        smooth: &Generalized,
+        (residual, smooth): (&Generalized, &Generalized),
         change: &Generalized,
         step: &Generalized,
         rate: &Generalized,
@@ -185,7 +189,7 @@ impl Balance<'_> {
             let brakes: f64 = (0..6).map(brake).sum();
             constant + share * slope - contacts - brakes
         };
-        let start = onward(0.0);
+        let start = dot20(step, residual);
         let enough = 0.1 * start.abs();
         let (mut low, mut at_low, mut high, mut at_high) = (0.0, start, 1.0, onward(1.0));
         if at_high <= enough.max(f64::MIN_POSITIVE) || start >= 0.0 {

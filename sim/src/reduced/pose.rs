@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::spatial::{Spatial, Spatial6, add_scaled, rigid, turn_about};
+use super::spatial::{Spatial, Spatial6, ZERO6, add_scaled, turn_about, write_rigid};
 use super::tree::{Arm, Tree};
 
 /// Freedoms: six of the front frame, two joints, six arms, six wheels.
@@ -156,26 +156,29 @@ pub(super) struct BodyInertias<T> {
 }
 
 impl Inertias {
+    /// Written in place: a matrix is too large to be handed on.
     pub(super) fn new(tree: &Tree, pose: &Pose) -> Self {
         let turned = |turn: &DMat3, inertia: DMat3| *turn * inertia * turn.transpose();
-        let (frames, arms) = (&tree.frames, &tree.arms);
-        let about_com = BodyInertias {
-            frame: core::array::from_fn(|i| turned(&pose.frame[i].turn, frames[i].inertia_kg_m2)),
-            arm: core::array::from_fn(|i| turned(&pose.arm[i].turn, arms[i].inertia_kg_m2)),
-            wheel: core::array::from_fn(|i| wheel_inertia(&arms[i], pose.arm[i].axle)),
+        let mut out = Self {
+            about_com: BodyInertias {
+                frame: [DMat3::ZERO; 3],
+                arm: [DMat3::ZERO; 6],
+                wheel: [DMat3::ZERO; 6],
+            },
+            spatial: BodyInertias { frame: [ZERO6; 3], arm: [ZERO6; 6], wheel: [ZERO6; 6] },
         };
-        let spatial = BodyInertias {
-            frame: core::array::from_fn(|i| {
-                rigid(frames[i].mass_kg, pose.frame[i].com, &about_com.frame[i])
-            }),
-            arm: core::array::from_fn(|i| {
-                rigid(arms[i].mass_kg, pose.arm[i].com, &about_com.arm[i])
-            }),
-            wheel: core::array::from_fn(|i| {
-                rigid(arms[i].wheel_kg, pose.arm[i].wheel, &about_com.wheel[i])
-            }),
-        };
-        Self { about_com, spatial }
+        let (about, spatial) = (&mut out.about_com, &mut out.spatial);
+        for (i, (part, at)) in tree.frames.iter().zip(&pose.frame).enumerate() {
+            about.frame[i] = turned(&at.turn, part.inertia_kg_m2);
+            write_rigid(&mut spatial.frame[i], part.mass_kg, at.com, &about.frame[i]);
+        }
+        for (i, (part, at)) in tree.arms.iter().zip(&pose.arm).enumerate() {
+            about.arm[i] = turned(&at.turn, part.inertia_kg_m2);
+            write_rigid(&mut spatial.arm[i], part.mass_kg, at.com, &about.arm[i]);
+            about.wheel[i] = wheel_inertia(part, at.axle);
+            write_rigid(&mut spatial.wheel[i], part.wheel_kg, at.wheel, &about.wheel[i]);
+        }
+        out
     }
 }
 

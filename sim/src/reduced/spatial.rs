@@ -109,31 +109,36 @@ pub(super) fn cross_motion(v: &Spatial, s: &Spatial) -> Spatial {
     join(w.cross(a), w.cross(b) + u.cross(a))
 }
 
-/// Inertia about the common point of `mass_kg` at `com`, with `about_com` in world axes.
-pub(super) fn rigid(mass_kg: f64, com: DVec3, about_com: &DMat3) -> Spatial6 {
+/// Writes the inertia about the common point of `mass_kg` at `com`, with `about_com` in world axes.
+#[inline]
+pub(super) fn write_rigid(out: &mut Spatial6, mass_kg: f64, com: DVec3, about_com: &DMat3) {
     let (c, m) = (com, mass_kg);
-    let square = c.length_squared();
-    let mut out = ZERO6;
+    let moment = c * m;
+    let square = m * c.length_squared();
     for j in 0..3 {
-        let mut column = about_com.col(j) - c * (m * c[j]);
-        column[j] += m * square;
-        let unit = DVec3::AXES[j];
-        out[j] = join(column, unit.cross(c) * m);
-        out[3 + j] = join(c.cross(unit) * m, unit * m);
+        let mut column = about_com.col(j) - c * moment[j];
+        column[j] += square;
+        let across = DVec3::AXES[j].cross(moment);
+        out[j] = join(column, across);
+        out[3 + j] = join(-across, DVec3::AXES[j] * m);
     }
-    out
 }
 
-/// A 3 x 3 matrix on the velocity of the point `at`, as a spatial matrix: X^T g X.
+/// Adds a 3 x 3 matrix that acts on the velocity of the point `at`: m += X^T g X.
 #[inline]
-pub(super) fn at_point(g: &DMat3, at: DVec3) -> Spatial6 {
-    let mut out = ZERO6;
-    for j in 0..3 {
-        let unit = DVec3::AXES[j];
-        out[j] = wrench_at(*g * unit.cross(at), at);
-        out[3 + j] = wrench_at(g.col(j), at);
+pub(super) fn add_at_point(m: &mut Spatial6, g: &DMat3, at: DVec3) {
+    let x = wrench_at(g.x_axis, at);
+    let y = wrench_at(g.y_axis, at);
+    let z = wrench_at(g.z_axis, at);
+    // A unit turn about an axis moves the point along the other two.
+    for i in 0..6 {
+        m[0][i] += z[i] * at.y - y[i] * at.z;
+        m[1][i] += x[i] * at.z - z[i] * at.x;
+        m[2][i] += y[i] * at.x - x[i] * at.y;
+        m[3][i] += x[i];
+        m[4][i] += y[i];
+        m[5][i] += z[i];
     }
-    out
 }
 
 #[cfg(test)]
@@ -145,7 +150,9 @@ mod tests {
         let com = DVec3::new(0.3, -1.2, 0.8);
         let about = DMat3::from_diagonal(DVec3::new(2.0, 3.0, 5.0));
         let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
-        let momentum = apply(&rigid(7.0, com, &about), &twist);
+        let mut inertia = ZERO6;
+        write_rigid(&mut inertia, 7.0, com, &about);
+        let momentum = apply(&inertia, &twist);
         let p = velocity_at(&twist, com) * 7.0;
         let l = about * angular(&twist) + com.cross(p);
         for (got, want) in momentum.iter().zip(join(l, p)) {
@@ -158,12 +165,13 @@ mod tests {
         let at = DVec3::new(0.3, -1.2, 0.8);
         let g = DMat3::from_cols_array(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]);
         let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
-        let got = apply(&at_point(&g, at), &twist);
+        let mut m = ZERO6;
+        add_at_point(&mut m, &g, at);
+        let got = apply(&m, &twist);
         let want = wrench_at(g * velocity_at(&twist, at), at);
         for (got, want) in got.iter().zip(want) {
             assert!((got - want).abs() < 1e-12);
         }
-        let m = at_point(&g, at);
         let other = [0.1, 0.7, -0.3, 0.2, -0.6, 0.5];
         assert!(
             (dot(&apply(&m, &twist), &other) - dot(&twist, &apply_transposed(&m, &other))).abs()

@@ -5,11 +5,12 @@ use proptest::prelude::*;
 use xt28_machine::{Machine, PerWheel};
 
 use super::ReducedBodies;
-use super::factor::{Factors, Stiffening};
+use super::factor::{Factors, Matrix};
+use super::newton::Convergence;
 use super::pose::{FREEDOMS, Generalized, Inertias, Pose, State, WHEELS};
-use super::spatial::{Spatial, angular, apply, at_point, dot, linear, velocity_at, wrench_at};
+use super::spatial::{Spatial, add_at_point, angular, apply, dot, linear, velocity_at, wrench_at};
 use super::tree::Tree;
-use crate::bodies::{Bodies, Loads};
+use crate::bodies::{Bodies, HingeSpring, Loads};
 use crate::{Effects, Parts, Terrain};
 
 fn parts() -> Parts {
@@ -70,7 +71,7 @@ proptest! {
             let inertias = Inertias::new(&tree, &pose).spatial;
             (pose, inertias)
         };
-        let mut with = Stiffening::new();
+        let mut with = Matrix { hinge: [0.0; FREEDOMS], bodies: inertias };
         for k in 6..FREEDOMS {
             with.hinge[k] = 100.0 * (1.0 + (seed * k as f64).sin());
         }
@@ -78,12 +79,12 @@ proptest! {
         let g = glam::DMat3::from_cols_array(&[9e2, 0.0, 0.0, 0.0, 4e2, 0.0,
             if sliding { -3e2 } else { 0.0 }, 0.0, 7e2]);
         let at = pose.arm[3].wheel - DVec3::Z * 0.7;
-        with.wheel[3] = at_point(&g, at);
-        with.frame = Some([[[0.0; 6]; 6], at_point(&g, pose.frame[1].com), [[0.0; 6]; 6]]);
+        add_at_point(&mut with.bodies.wheel[3], &g, at);
+        add_at_point(&mut with.bodies.frame[1], &g, pose.frame[1].com);
 
         let right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
         let mut factors = Factors::new();
-        prop_assert!(factors.factor(&pose, &inertias, &with).is_some());
+        prop_assert!(factors.factor(&pose, &mut with).is_some());
         let x = factors.solve(&pose, &right);
 
         let frames = pose.frame_twists(&x);
@@ -148,4 +149,40 @@ fn a_falling_machine_falls() {
     let motion = bodies.motion();
     assert!((motion.velocity_m_s[2] + 9.81).abs() < 1e-9, "{:?}", motion.velocity_m_s);
     assert!(motion.arm.0.iter().all(|arm| arm.angle_rad.abs() < 1e-9), "nothing else moves");
+}
+
+#[test]
+fn every_step_on_rough_ground_ends_in_balance() {
+    let rough = crate::terrain::Grid::from_fn(crate::terrain::Extent::default(), |x, y| {
+        0.1 * (1.7 * x).sin() * (2.3 * y).cos() + 0.04 * (11.0 * x + 7.0 * y).sin()
+    });
+    let terrain = Terrain::Grid(std::sync::Arc::new(rough));
+    for rate_hz in [60.0, 120.0, 200.0] {
+        let mut bodies = ReducedBodies::new(&parts(), &terrain, PerWheel::splat(0.2));
+        let motion = bodies.motion();
+        let hold = |angle_rad: f64, stiffness_nm: f64| HingeSpring {
+            stiffness_nm,
+            damping_nms: 0.05 * stiffness_nm,
+            rest_rad: angle_rad,
+        };
+        let (mut most, mut sum) = (0, 0);
+        let steps = (10.0 * rate_hz) as usize;
+        for i in 0..steps {
+            let bend = (i as f64 / rate_hz).sin();
+            bodies.advance(
+                &Loads {
+                    arm: motion.arm.map(|arm| hold(arm.angle_rad + 0.05, 5.0e5)),
+                    joint: [hold(0.3 * bend, 2.5e6), hold(-0.2 * bend, 2.5e6)],
+                    drive_nm: PerWheel::splat(900.0),
+                    ..Loads::default()
+                },
+                1.0 / rate_hz,
+            );
+            let Convergence { iterations, residual_m_s } = bodies.convergence;
+            assert!(residual_m_s < 1e-10, "{rate_hz} Hz, step {i}: {residual_m_s} m/s");
+            most = most.max(iterations);
+            sum += iterations;
+        }
+        assert!(sum < 8 * steps, "{rate_hz} Hz: {} iterations a step, at most {most}", sum / steps);
+    }
 }

@@ -26,6 +26,8 @@ pub(super) struct Search {
     /// Path that each frame's hull may yet travel before any of it can touch, m. Only saves time:
     /// nothing that is found depends on it.
     clear_m: [f64; 3],
+    /// Wheels that stuck somewhere at the end of the last step: a first guess for this one.
+    pub(super) stuck: [bool; 6],
 }
 
 /// A ball of the vehicle's outside, from the front frame's origin.
@@ -38,7 +40,7 @@ struct Ball {
 
 impl Search {
     pub(super) const fn new(terrain: Terrain) -> Self {
-        Self { terrain, clear_m: [0.0; 3] }
+        Self { terrain, clear_m: [0.0; 3], stuck: [false; 6] }
     }
 
     /// Fills `found` with the contacts that may make a force within this step.
@@ -112,7 +114,9 @@ impl Search {
             let at = touch.point - origin - touch.normal * (0.5 * depth_m);
             if found.len() < CONTACTS_MAX {
                 let place = (ball.body, at, touch.normal);
-                found.push(Contact::new(law, place, depth_m, touch.weight, dt_s));
+                let mut contact = Contact::new(law, place, depth_m, touch.weight, dt_s);
+                contact.held = matches!(ball.body, Body::Wheel(i) if self.stuck[i]);
+                found.push(contact);
             }
         }
     }

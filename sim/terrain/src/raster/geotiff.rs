@@ -46,10 +46,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Raster, String> {
     }
     let keys = geo_keys(&mut tiff).map_err(say)?;
     check_units(&keys)?;
-    if text(&mut tiff, Tag::Unknown(GDAL_METADATA))
-        .is_some_and(|xml| xml.contains("role=\"scale\""))
-    {
-        return Err("its heights are scaled numbers; `gdal_translate -unscale`".to_owned());
+    let metadata = text(&mut tiff, Tag::Unknown(GDAL_METADATA)).unwrap_or_default();
+    if metadata.contains("role=\"scale\"") || metadata.contains("role=\"offset\"") {
+        return Err(
+            "its heights are scaled or shifted numbers; `gdal_translate -unscale`".to_owned()
+        );
     }
     let nodata = match text(&mut tiff, Tag::GdalNodata) {
         Some(text) => Some(nodata(&text)?),
@@ -218,6 +219,18 @@ mod tests {
         assert!(raster.height_m[2].is_nan());
         let bytes = read(&write::<colortype::Gray8>(&[5, 6, 7, 1, 2, 255], &[], None)).unwrap();
         assert_eq!(bytes.height_m, [1.0, 2.0, 255.0, 5.0, 6.0, 7.0]);
+    }
+
+    #[test]
+    fn scaled_numbers_are_not_taken_for_heights() {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+        let mut image = encoder.new_image::<Gray32Float>(3, 2).unwrap();
+        let xml = "<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.01</Item></GDALMetadata>";
+        image.encoder().write_tag(Tag::Unknown(GDAL_METADATA), xml).unwrap();
+        image.write_data(&[0.0; 6]).unwrap();
+        let error = read(bytes.get_ref()).unwrap_err();
+        assert!(error.contains("-unscale"), "{error}");
     }
 
     #[test]

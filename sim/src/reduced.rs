@@ -23,12 +23,18 @@ use xt28_machine::{PerWheel, Wheel};
 
 use self::contact::{Body, Contact};
 use self::newton::{Balance, Convergence};
-use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, State, WHEELS};
+use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search};
 use self::tree::Tree;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
-use crate::{Parts, Terrain};
+use crate::{Parts, RollHinge, Terrain};
+
+/// Stiffness of the roll hinge's stops, Nm/rad (assumed): the machine's weight on one side's wheels
+/// twists them by a degree and a half.
+const ROLL_STOP_NM: f64 = 8.0e6;
+/// Damping of the stops, Nm s/rad (assumed).
+const ROLL_STOP_NMS: f64 = 4.0e5;
 
 /// The vehicle's bodies in reduced coordinates. A clone is a snapshot.
 #[derive(Debug)]
@@ -51,6 +57,7 @@ impl Bodies for ReducedBodies {
             position: DVec3::ZERO,
             turn: DQuat::IDENTITY,
             joint_rad: [0.0; 2],
+            roll_rad: 0.0,
             arm_rad: stroke_m.map(|stroke_m| parts.arm_angle_rad(stroke_m)).0,
             rate: [0.0; FREEDOMS],
         };
@@ -139,6 +146,9 @@ impl ReducedBodies {
         for i in 0..6 {
             spring(ARMS + i, &loads.arm.0[i], s.arm_rad[i]);
         }
+        if let Some(roll) = &self.tree.roll {
+            spring(ROLL, &roll_spring(roll, s, dt_s), s.roll_rad);
+        }
         let mut on_wheel = [spatial::ZERO; 6];
         for i in 0..6 {
             lack[WHEELS + i] -= loads.drive_nm.0[i];
@@ -170,6 +180,22 @@ impl ReducedBodies {
     }
 }
 
+/// The roll hinge's spring toward level, or with its stop where the roll is about to go beyond.
+fn roll_spring(roll: &RollHinge, state: &State, dt_s: f64) -> HingeSpring {
+    let RollHinge { stiffness_nm, damping_nms, max_rad } = *roll;
+    let ahead_rad = state.roll_rad + dt_s * state.rate[ROLL];
+    if ahead_rad.abs() <= max_rad {
+        return HingeSpring { stiffness_nm, damping_nms, rest_rad: 0.0 };
+    }
+    // Two springs as one: both pull as hard together as each toward its own rest.
+    let both_nm = stiffness_nm + ROLL_STOP_NM;
+    HingeSpring {
+        stiffness_nm: both_nm,
+        damping_nms: damping_nms + ROLL_STOP_NMS,
+        rest_rad: ROLL_STOP_NM * max_rad.copysign(ahead_rad) / both_nm,
+    }
+}
+
 impl State {
     /// The front frame's twist about its origin.
     fn twist(&self) -> spatial::Spatial {
@@ -191,6 +217,7 @@ impl State {
         for i in 0..2 {
             self.joint_rad[i] += dt_s * self.rate[JOINTS + i];
         }
+        self.roll_rad += dt_s * self.rate[ROLL];
         for i in 0..6 {
             self.arm_rad[i] += dt_s * self.rate[ARMS + i];
         }

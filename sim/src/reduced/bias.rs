@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
+use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS, gather};
 use super::spatial::{
     Spatial, add, add_scaled, angular, cross_motion, dot, linear, velocity_at, wrench_at,
 };
@@ -23,7 +23,13 @@ pub(super) fn bias(
     acceleration[0][3..].copy_from_slice(&(-gravity).to_array());
     for i in 0..2 {
         acceleration[i + 1] = acceleration[i];
-        let turning = cross_motion(&twists[i], &pose.joint_axis[i]);
+        let mut ahead = twists[i];
+        if let (0, Some(axis)) = (i, &pose.roll_axis) {
+            let turning = cross_motion(&ahead, axis);
+            add_scaled(&mut acceleration[1], &turning, rate[ROLL]);
+            add_scaled(&mut ahead, axis, rate[ROLL]);
+        }
+        let turning = cross_motion(&ahead, &pose.joint_axis[i]);
         add_scaled(&mut acceleration[i + 1], &turning, rate[JOINTS + i]);
     }
     let mut out = [0.0; FREEDOMS];
@@ -60,12 +66,7 @@ pub(super) fn bias(
         out[ARMS + i] = dot(&at.arm_axis, &arm);
         add(&mut on_frame[frame], &arm);
     }
-    for i in (0..2).rev() {
-        let behind = on_frame[i + 1];
-        out[JOINTS + i] = dot(&pose.joint_axis[i], &behind);
-        add(&mut on_frame[i], &behind);
-    }
-    out[..6].copy_from_slice(&on_frame[0]);
+    gather(pose, &mut on_frame, &mut out);
     out
 }
 

@@ -2,11 +2,11 @@
 //!
 //! The vehicle's tree is fixed: wheel on arm, arm on frame, frame behind frame. Eliminating each
 //! hinge leaves a rank-one change of its parent's spatial matrix (the articulated-body recursion,
-//! Featherstone chapter 7), so the 20 x 20 matrix is never formed. What a contact adds acts on one
+//! Featherstone chapter 7), so the whole matrix is never formed. What a contact adds acts on one
 //! body alone and joins that body's spatial matrix. Sliding friction follows the normal force but
 //! not the reverse, so the matrices are not symmetric and rows and columns are kept apart.
 
-use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
+use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS};
 use super::spatial::{
     Spatial, Spatial6, ZERO, ZERO6, add, add_scaled, add6, apply, apply_transposed, dot,
     take_rank_one,
@@ -62,6 +62,9 @@ impl Factors {
             let k = JOINTS + i;
             let (ahead, behind) = frame.split_at_mut(i + 1);
             pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k])?;
+            if let (0, Some(axis)) = (i, &pose.roll_axis) {
+                pivot[ROLL - 6] = eliminate(&mut behind[0], axis, hinge[ROLL])?;
+            }
             add6(&mut ahead[i], &behind[0]);
         }
         self.root = frame[0];
@@ -87,6 +90,11 @@ impl Factors {
             let mut handed = on_frame[i + 1];
             out[JOINTS + i] -= dot(&pose.joint_axis[i], &handed);
             add_scaled(&mut handed, &joint.column, out[JOINTS + i] * joint.inverse);
+            if let (0, Some(axis)) = (i, &pose.roll_axis) {
+                let roll = &self.pivot[ROLL - 6];
+                out[ROLL] -= dot(axis, &handed);
+                add_scaled(&mut handed, &roll.column, out[ROLL] * roll.inverse);
+            }
             add(&mut on_frame[i], &handed);
         }
         let mut twist = [[0.0; 6]; 3];
@@ -98,9 +106,14 @@ impl Factors {
         out[..6].copy_from_slice(&twist[0]);
         for i in 0..2 {
             let joint = &self.pivot[JOINTS + i - 6];
-            let rate = (out[JOINTS + i] - dot(&joint.row, &twist[i])) * joint.inverse;
-            out[JOINTS + i] = rate;
             twist[i + 1] = twist[i];
+            if let (0, Some(axis)) = (i, &pose.roll_axis) {
+                let roll = &self.pivot[ROLL - 6];
+                out[ROLL] = (out[ROLL] - dot(&roll.row, &twist[0])) * roll.inverse;
+                add_scaled(&mut twist[1], axis, out[ROLL]);
+            }
+            let rate = (out[JOINTS + i] - dot(&joint.row, &twist[i + 1])) * joint.inverse;
+            out[JOINTS + i] = rate;
             add_scaled(&mut twist[i + 1], &pose.joint_axis[i], rate);
         }
         for i in 0..6 {

@@ -9,7 +9,7 @@
 
 use super::contact::{Body, Contact};
 use super::factor::{Factors, Matrix};
-use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, WHEELS};
+use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, Pose, WHEELS, gather};
 use super::spatial::{Spatial, Spatial6, add, add_at_point, dot, velocity_at, wrench_at};
 use super::tree::Tree;
 
@@ -268,12 +268,7 @@ pub(super) fn generalised(
         out[ARMS + i] = dot(&pose.arm[i].arm_axis, wrench);
         add(&mut on_frame[Tree::frame_of(i)], wrench);
     }
-    for i in (0..2).rev() {
-        let behind = on_frame[i + 1];
-        out[JOINTS + i] = dot(&pose.joint_axis[i], &behind);
-        add(&mut on_frame[i], &behind);
-    }
-    out[..6].copy_from_slice(&on_frame[0]);
+    gather(pose, &mut on_frame, &mut out);
     out
 }
 

@@ -2,14 +2,16 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::spatial::{Spatial, Spatial6, ZERO6, add_scaled, turn_about, write_rigid};
+use super::spatial::{Spatial, Spatial6, ZERO6, add, add_scaled, dot, turn_about, write_rigid};
 use super::tree::{Arm, Tree};
 
-/// Freedoms: six of the front frame, two joints, six arms, six wheels.
-pub(super) const FREEDOMS: usize = 20;
+/// Freedoms: six of the front frame, two joints, six arms, six wheels, and the roll of the middle
+/// frame against the front one, which stays zero in a machine that has no such hinge.
+pub(super) const FREEDOMS: usize = 21;
 pub(super) const JOINTS: usize = 6;
 pub(super) const ARMS: usize = 8;
 pub(super) const WHEELS: usize = 14;
+pub(super) const ROLL: usize = 20;
 /// A number for each freedom. The first six are a twist (or wrench) of the front frame.
 pub(super) type Generalized = [f64; FREEDOMS];
 
@@ -22,6 +24,8 @@ pub(super) struct State {
     pub(super) turn: DQuat,
     /// Joint angles, left > 0, rad.
     pub(super) joint_rad: [f64; 2],
+    /// Roll of the middle frame against the front one, rad.
+    pub(super) roll_rad: f64,
     /// Arm angles from the reference pose, extending > 0, rad.
     pub(super) arm_rad: [f64; 6],
     /// Velocities; the front frame's twist is about its origin.
@@ -35,6 +39,9 @@ pub(super) struct Pose {
     pub(super) arm: [ArmPose; 6],
     /// How each joint moves what is behind it.
     pub(super) joint_axis: [Spatial; 2],
+    /// How the roll hinge moves what is behind it, where there is one: it lies ahead of the front
+    /// joint's.
+    pub(super) roll_axis: Option<Spatial>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,6 +87,10 @@ impl Pose {
         pose.frame[0] = FramePose::new(turn, origin, tree.frames[0].com);
         for i in 0..2 {
             let at = pose.frame[i].point(tree.joints[i]);
+            if i == 0 && tree.roll.is_some() {
+                pose.roll_axis = Some(turn_about(turn.x_axis, at));
+                turn *= DMat3::from_rotation_x(state.roll_rad);
+            }
             // Bending left turns the frame behind to the right.
             turn *= DMat3::from_rotation_z(-state.joint_rad[i]);
             origin = at - turn * tree.joints[i];
@@ -100,6 +111,9 @@ impl Pose {
         twist[0].copy_from_slice(&rate[..6]);
         for i in 0..2 {
             twist[i + 1] = twist[i];
+            if let (0, Some(axis)) = (i, &self.roll_axis) {
+                add_scaled(&mut twist[1], axis, rate[ROLL]);
+            }
             add_scaled(&mut twist[i + 1], &self.joint_axis[i], rate[JOINTS + i]);
         }
         twist
@@ -120,6 +134,21 @@ impl Pose {
         add_scaled(&mut twist, &self.arm[i].wheel_axis, rate[WHEELS + i]);
         twist
     }
+}
+
+/// Carries wrenches on the frames forward to the front one, and writes them as forces on the joints
+/// and on the front frame.
+#[inline]
+pub(super) fn gather(pose: &Pose, on_frame: &mut [Spatial; 3], out: &mut Generalized) {
+    for i in (0..2).rev() {
+        let behind = on_frame[i + 1];
+        out[JOINTS + i] = dot(&pose.joint_axis[i], &behind);
+        if let (0, Some(axis)) = (i, &pose.roll_axis) {
+            out[ROLL] = dot(axis, &behind);
+        }
+        add(&mut on_frame[i], &behind);
+    }
+    out[..6].copy_from_slice(&on_frame[0]);
 }
 
 impl ArmPose {

@@ -7,14 +7,20 @@ use xt28_machine::{Machine, PerWheel};
 use super::ReducedBodies;
 use super::factor::{Factors, Matrix};
 use super::newton::Convergence;
-use super::pose::{FREEDOMS, Generalized, Inertias, Pose, State, WHEELS};
+use super::pose::{FREEDOMS, Generalized, Inertias, Pose, ROLL, State, WHEELS};
 use super::spatial::{Spatial, add_at_point, angular, apply, dot, linear, velocity_at, wrench_at};
 use super::tree::Tree;
 use crate::bodies::{Bodies, HingeSpring, Loads};
-use crate::{Effects, Parts, Terrain};
+use crate::{Effects, Parts, RollHinge, Terrain};
 
 fn parts() -> Parts {
     Parts::new(&Machine::xt28(), &Effects::default())
+}
+
+/// With a limp roll hinge.
+fn rolling() -> Parts {
+    let limp = RollHinge { stiffness_nm: 0.0, damping_nms: 0.0, max_rad: 10.0 };
+    Parts { roll_hinge: Some(limp), ..parts() }
 }
 
 /// A state off the middle in everything.
@@ -24,6 +30,7 @@ fn bent(seed: f64) -> State {
         position: DVec3::new(wave(1, 5.0), wave(2, 5.0), 3.0),
         turn: DQuat::from_euler(glam::EulerRot::ZYX, wave(3, 3.0), wave(4, 0.5), wave(5, 0.5)),
         joint_rad: [wave(6, 0.4), wave(7, 0.4)],
+        roll_rad: wave(15, 0.2),
         arm_rad: core::array::from_fn(|i| wave(8 + i, 0.3)),
         rate: core::array::from_fn(|i| wave(20 + i, if i < WHEELS { 0.7 } else { 3.0 })),
     }
@@ -63,8 +70,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn the_factors_solve_the_sum_over_bodies(seed in 0.0..100.0_f64, sliding in any::<bool>()) {
-        let tree = Tree::new(&parts());
+    fn the_factors_solve_the_sum_over_bodies(
+        seed in 0.0..100.0_f64,
+        sliding in any::<bool>(),
+        rolls in any::<bool>(),
+    ) {
+        let tree = Tree::new(&if rolls { rolling() } else { parts() });
         let state = bent(seed);
         let (pose, inertias) = {
             let pose = Pose::new(&tree, &state);
@@ -82,7 +93,10 @@ proptest! {
         add_at_point(&mut with.bodies.wheel[3], &g, at);
         add_at_point(&mut with.bodies.frame[1], &g, pose.frame[1].com);
 
-        let right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
+        let mut right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
+        if !rolls {
+            right[ROLL] = 0.0;
+        }
         let mut factors = Factors::new();
         prop_assert!(factors.factor(&pose, &mut with).is_some());
         let x = factors.solve(&pose, &right);
@@ -116,7 +130,7 @@ fn conserved(bodies: &ReducedBodies) -> (f64, DVec3, DVec3) {
 
 /// Energy, momentum and angular momentum lost by a tumbling, swinging machine in 1 s, as shares.
 fn lost(dt_s: f64) -> [f64; 3] {
-    let mut weightless = parts();
+    let mut weightless = rolling();
     weightless.gravity_m_s2 = [0.0; 3];
     let mut bodies = ReducedBodies::new(&weightless, &Terrain::Flat, PerWheel::splat(0.2));
     bodies.state = bent(0.3);
@@ -185,4 +199,38 @@ fn every_step_on_rough_ground_ends_in_balance() {
         }
         assert!(sum < 8 * steps, "{rate_hz} Hz: {} iterations a step, at most {most}", sum / steps);
     }
+}
+
+#[test]
+fn a_sprung_roll_hinge_lets_a_side_follow_the_ground_and_stops_where_it_must() {
+    let spring =
+        |stiffness_nm: f64, max_rad: f64| RollHinge { stiffness_nm, damping_nms: 2e4, max_rad };
+    // A step of 0.2 m under the right wheels of the front frame alone.
+    let step = crate::terrain::Grid::from_fn(crate::terrain::Extent::default(), |x, y| {
+        if x > -1.5 && y < 0.0 { 0.2 } else { 0.0 }
+    });
+    let terrain = Terrain::Grid(std::sync::Arc::new(step));
+    let rolled = |roll_hinge: Option<RollHinge>| {
+        let parts = Parts { roll_hinge, ..parts() };
+        let mut bodies = ReducedBodies::new(&parts, &terrain, PerWheel::splat(0.25));
+        bodies.state.position.z += 0.2;
+        let hold = |rest_rad| HingeSpring { stiffness_nm: 2e6, damping_nms: 2e5, rest_rad };
+        let loads = Loads {
+            arm: PerWheel::splat(hold(0.05)),
+            joint: [hold(0.0); 2],
+            hold_nm: PerWheel::splat(2e4),
+            ..Loads::default()
+        };
+        for _ in 0..1200 {
+            bodies.advance(&loads, 1.0 / 120.0);
+        }
+        assert!(bodies.state.rate.iter().all(|rate| rate.abs() < 1e-3), "it stands");
+        bodies.state.roll_rad.abs()
+    };
+    let (limp, stiff) = (rolled(Some(spring(0.0, 1.0))), rolled(Some(spring(1e8, 1.0))));
+    let (stopped, none) = (rolled(Some(spring(0.0, 0.02))), rolled(None));
+    // 0.2 m over a track of 2.35 m is 0.085 rad.
+    assert!((0.06..0.09).contains(&limp), "{limp}");
+    assert!(stiff < 0.005 && none == 0.0, "{stiff} {none}");
+    assert!((0.02..0.04).contains(&stopped), "{stopped}");
 }

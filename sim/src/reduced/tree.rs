@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use xt28_machine::Wheel;
 
 use super::contact::ContactLaw;
-use crate::{HullBall, Part, Parts};
+use crate::{HullBall, Part, Parts, RollHinge};
 
 /// Everything about the bodies that does not move. Frames' coordinates are the machine file's.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub(super) struct Tree {
     pub(super) frames: [Frame; 3],
     /// Where the frames are jointed, in the coordinates of either frame.
     pub(super) joints: [DVec3; 2],
+    /// The spring of the middle frame's roll against the front one, where it can.
+    pub(super) roll: Option<RollHinge>,
     pub(super) arms: [Arm; 6],
     pub(super) tyres: [ContactLaw; 6],
     pub(super) radius_m: f64,
@@ -62,6 +64,7 @@ impl Tree {
                 inertia_kg_m2: tensor(&part),
             }),
             joints: parts.joint_m.map(DVec3::from),
+            roll: parts.roll_hinge,
             arms,
             tyres: parts.tyres.0.map(|tyre| ContactLaw {
                 stiffness_n_m: tyre.stiffness_n_m,

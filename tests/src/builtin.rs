@@ -31,7 +31,10 @@ pub const BUILTIN: &[(&str, &str)] = texts!(
     "brown-out",
     "reboot",
     "broken-wire",
-    "false-stroke"
+    "false-stroke",
+    "2016-cross-slope",
+    "2016-pedal",
+    "2016-bend"
 );
 
 /// Name and text of the scripts that they play.
@@ -47,7 +50,10 @@ const SCRIPTS: &[(&str, &str)] = texts!(
     "bumpy-field-locked.script",
     "kerb.script",
     "brown-out.script",
-    "false-stroke.script"
+    "false-stroke.script",
+    "2016-cross-slope.operator",
+    "2016-pedal.operator",
+    "2016-bend.operator",
 );
 
 /// The text of a built-in script.

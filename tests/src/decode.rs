@@ -3,6 +3,7 @@
 use xt28_dbc::{Frame, messages as m};
 use xt28_machine::PerWheel;
 
+use crate::Series;
 use crate::trace::{Attitude, DriveCommand, EcuState, Fault, Motion, Trace, wrapped_rad};
 use crate::trouble::TroubleReader;
 
@@ -14,6 +15,9 @@ pub struct Decoder {
     load: Halves,
     /// Of the pendulum-arm ECU, of the transmission ECU.
     trouble: [TroubleReader; 2],
+    /// Wheel speeds of a machine that does not say which way its wheels turn.
+    unsigned_speed_rpm: Halves,
+    unsigned_speed_rad_s: Series<PerWheel<f64>>,
 }
 
 impl Default for Decoder {
@@ -23,6 +27,8 @@ impl Default for Decoder {
             stroke: Halves::default(),
             load: Halves::default(),
             trouble: [ARM_ADDRESS, DRIVE_ADDRESS].map(TroubleReader::new),
+            unsigned_speed_rpm: Halves::default(),
+            unsigned_speed_rad_s: Series::default(),
         }
     }
 }
@@ -31,25 +37,31 @@ impl Default for Decoder {
 const ARM_ADDRESS: u8 = 0x28;
 const DRIVE_ADDRESS: u8 = 0x29;
 
-/// A per-wheel measurement that comes in two frames of one tick: the front pair, and the others.
+/// A per-wheel measurement that comes in two frames of one tick: one pair, and the four others.
 #[derive(Clone, Copy, Debug, Default)]
 struct Halves {
-    front: Option<[f64; 2]>,
-    others: Option<[f64; 4]>,
+    pair: Option<[f64; 2]>,
+    four: Option<[f64; 4]>,
 }
 
 impl Halves {
-    /// The whole, once both halves are there; then waits for the next two.
-    fn join(&mut self) -> Option<PerWheel<f64>> {
-        let (Some([fr, fl]), Some([mr, ml, br, bl])) = (self.front, self.others) else {
-            return None;
-        };
-        *self = Self::default();
-        Some(PerWheel([fr, fl, mr, ml, br, bl]))
+    /// The four and the pair, once both are there; then waits for the next two.
+    fn join(&mut self) -> Option<([f64; 4], [f64; 2])> {
+        let joined = self.four.zip(self.pair);
+        if joined.is_some() {
+            *self = Self::default();
+        }
+        joined
+    }
+
+    /// The whole, where the pair is the front one.
+    fn join_front(&mut self) -> Option<PerWheel<f64>> {
+        self.join().map(|([mr, ml, br, bl], [fr, fl])| PerWheel([fr, fl, mr, ml, br, bl]))
     }
 }
 
 const M_PER_MM: f64 = 1e-3;
+const RAD_S_PER_RPM: f64 = std::f64::consts::TAU / 60.0;
 const N_PER_DAN: f64 = 10.0;
 
 impl Decoder {
@@ -72,7 +84,10 @@ impl Decoder {
 
     /// What was read.
     #[must_use]
-    pub fn finish(self) -> Trace {
+    pub fn finish(mut self) -> Trace {
+        if self.trace.wheel_speed_rad_s.samples().is_empty() {
+            self.trace.wheel_speed_rad_s = self.unsigned_speed_rad_s;
+        }
         self.trace
     }
 
@@ -97,14 +112,23 @@ impl Decoder {
             m::WheelSpeedJoint::ID => {
                 let j = m::WheelSpeedJoint::decode(frame)?;
                 t.joint_rad.push(at_s, [j.front_joint_deg, j.rear_joint_deg].map(f64::to_radians));
+                self.unsigned_speed_rpm.pair = Some([j.wheel5_rpm, j.wheel6_rpm]);
+            }
+            m::WheelSpeed::ID => {
+                let w = m::WheelSpeed::decode(frame)?;
+                let rpm = [w.wheel1_rpm, w.wheel2_rpm, w.wheel3_rpm, w.wheel4_rpm];
+                self.unsigned_speed_rpm.four = Some(rpm);
             }
             m::WheelSpeedSigned::ID => {
                 let w = m::WheelSpeedSigned::decode(frame)?;
                 let rpm = [w.fr_rpm, w.fl_rpm, w.mr_rpm, w.ml_rpm, w.br_rpm, w.bl_rpm];
-                let rad_s = rpm.map(|rpm| rpm * std::f64::consts::TAU / 60.0);
-                t.wheel_speed_rad_s.push(at_s, PerWheel(rad_s));
+                t.wheel_speed_rad_s.push(at_s, PerWheel(rpm.map(|rpm| rpm * RAD_S_PER_RPM)));
             }
             _ => return self.decode_arms(at_s, frame),
+        }
+        if let Some(([fr, fl, mr, ml], [br, bl])) = self.unsigned_speed_rpm.join() {
+            let rad_s = [fr, fl, mr, ml, br, bl].map(|rpm| rpm * RAD_S_PER_RPM);
+            self.unsigned_speed_rad_s.push(at_s, PerWheel(rad_s));
         }
         Ok(())
     }
@@ -113,28 +137,28 @@ impl Decoder {
         match frame.id() {
             m::PosFront::ID => {
                 let p = m::PosFront::decode(frame)?;
-                self.stroke.front = Some([p.fr_mm, p.fl_mm].map(|mm| mm * M_PER_MM));
+                self.stroke.pair = Some([p.fr_mm, p.fl_mm].map(|mm| mm * M_PER_MM));
             }
             m::PosMidRear::ID => {
                 let p = m::PosMidRear::decode(frame)?;
                 let mm = [p.mr_mm, p.ml_mm, p.br_mm, p.bl_mm];
-                self.stroke.others = Some(mm.map(|mm| mm * M_PER_MM));
+                self.stroke.four = Some(mm.map(|mm| mm * M_PER_MM));
             }
             m::CylLoadFront::ID => {
                 let l = m::CylLoadFront::decode(frame)?;
-                self.load.front = Some([l.fr_dan, l.fl_dan].map(|dan| dan * N_PER_DAN));
+                self.load.pair = Some([l.fr_dan, l.fl_dan].map(|dan| dan * N_PER_DAN));
             }
             m::CylLoadMidRear::ID => {
                 let l = m::CylLoadMidRear::decode(frame)?;
                 let dan = [l.mr_dan, l.ml_dan, l.br_dan, l.bl_dan];
-                self.load.others = Some(dan.map(|dan| dan * N_PER_DAN));
+                self.load.four = Some(dan.map(|dan| dan * N_PER_DAN));
             }
             _ => return self.decode_commands(at_s, frame),
         }
-        if let Some(stroke_m) = self.stroke.join() {
+        if let Some(stroke_m) = self.stroke.join_front() {
             self.trace.stroke_m.push(at_s, stroke_m);
         }
-        if let Some(load_n) = self.load.join() {
+        if let Some(load_n) = self.load.join_front() {
             self.trace.cylinder_load_n.push(at_s, load_n);
         }
         Ok(())

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ecu_emu::OperatorError;
 use xt28_machine::MachineError;
 use xt28_sim::TerrainError;
 
@@ -47,6 +48,14 @@ pub enum ScenarioError {
         script: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// The operator's script that it names was refused.
+    #[error("{operator_at}: {source}")]
+    Operator {
+        /// File and line of the operator.
+        operator_at: String,
+        /// What is wrong with the script.
+        source: OperatorError,
     },
     /// The terrain that it names was refused.
     #[error("{terrain_at}: {source}")]

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod builtin;
+mod cab_script;
 mod decode;
 mod digest;
 mod error;
@@ -25,6 +26,7 @@ mod trouble;
 mod truth;
 
 pub use builtin::BUILTIN;
+pub use cab_script::CabScript;
 pub use decode::Decoder;
 pub use digest::sha256;
 pub use error::{ScenarioError, SetupError};

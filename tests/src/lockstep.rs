@@ -13,7 +13,7 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use ecu_emu::{Emulator, EmulatorConfig, TICK};
+use ecu_emu::{Emulator, EmulatorConfig, Operator, TICK};
 use gateway::policy::SpecError;
 use gateway::{Gateway, GatewayConfig, Order};
 use xt28_bus::{Bitrate, NodeId, VirtualBus, candump};
@@ -75,6 +75,8 @@ impl<W: Write> Lockstep<W> {
         let config = EmulatorConfig {
             effects: overlay.effects(),
             mishaps: scenario.mishaps(),
+            profile: scenario.profile,
+            operator: scenario.cab.as_ref().map_or_else(Operator::idle, |cab| cab.operator.clone()),
             ..EmulatorConfig::new(machine.clone(), terrain.clone(), Some(*seed))
         };
         let emulator = (bus.attach("emulator"), Emulator::new(&config));

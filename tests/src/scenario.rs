@@ -3,10 +3,11 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ecu_emu::{Mishaps, SensorFault};
+use ecu_emu::{Mishaps, Profile, SensorFault};
 use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
+use crate::cab_script::{self, CabScript};
 use crate::{Event, Expectation, Ground, Incident, ScenarioError};
 
 /// One scenario as its TOML file states it. Units are in the keys.
@@ -35,6 +36,14 @@ pub struct Scenario {
     /// The script that the policy names; not a key.
     #[serde(skip)]
     pub script: Option<Script>,
+    /// Whose control runs in the ECUs: `paper`, or the firmware of `2016`, which an operator drives.
+    #[serde(default, deserialize_with = "cab_script::profile")]
+    pub profile: Profile,
+    /// What the operator does: a script beside the scenario file. Profile 2016 only.
+    pub operator: Option<PathBuf>,
+    /// The script that `operator` names; not a key.
+    #[serde(skip)]
+    pub cab: Option<CabScript>,
     /// Seed of all noise.
     #[serde(default)]
     pub seed: u64,
@@ -78,8 +87,8 @@ impl Scenario {
     /// of a script or of a terrain file.
     ///
     /// # Errors
-    /// [`ScenarioError::Parse`], [`ScenarioError::Value`], [`ScenarioError::Script`] or
-    /// [`ScenarioError::Terrain`].
+    /// [`ScenarioError::Parse`], [`ScenarioError::Value`], [`ScenarioError::Script`],
+    /// [`ScenarioError::Operator`] or [`ScenarioError::Terrain`].
     pub fn parse(
         text: &str,
         path: &Path,
@@ -106,6 +115,13 @@ impl Scenario {
                 source,
             })?;
             scenario.script = Some(Script { path: script, text });
+        }
+        if let Some(file) = &scenario.operator {
+            let cab = CabScript::read(&beside.join(file), &read);
+            scenario.cab = Some(cab.map_err(|source| ScenarioError::Operator {
+                operator_at: format!("{}:{}", path.display(), line_of(text, "operator")),
+                source,
+            })?);
         }
         Ok(scenario)
     }
@@ -137,6 +153,12 @@ impl Scenario {
         }
         if let Some(problem) = self.faults.iter().find_map(|fault| fault.check().err()) {
             return refuse("[[fault]]", format!(": {problem}"));
+        }
+        if self.operator.is_some() && self.profile == Profile::Paper {
+            return refuse(
+                "operator",
+                "needs profile = \"2016\": no cab is heard otherwise".into(),
+            );
         }
         self.terrain.spec.check().map_err(|fault| ScenarioError::Value {
             path: path.to_owned(),
@@ -227,6 +249,35 @@ stands-still = { below_m_s = 0.02 }
             "[terrain.slope]\ngrade = 0.1\n[[terrain.bumps]]\nheight_m = 0.1\nwavelength_m = 3";
         assert_eq!(with(both).unwrap().terrain.to_string(), "slope 10 %, bumps 0.1 m");
         assert_eq!(with("").unwrap().terrain.to_string(), "flat ground");
+    }
+
+    #[test]
+    fn an_operator_is_read_from_beside_the_scenario_and_needs_the_profile_of_2016() {
+        const ACTION: &str = "[[action]]\nat_s = 1.0\nleft_button = 18\n";
+        let parse = |profile: &str, action: &'static str| {
+            let keys =
+                format!("profile = \"{profile}\"\noperator = \"cab.toml\"\n\n[terrain.ramp]");
+            Scenario::parse(
+                &GOOD.replace("[terrain.ramp]", &keys),
+                Path::new("a/ramp.toml"),
+                |path| {
+                    assert_eq!(path, Path::new("a/cab.toml"));
+                    Ok(action.to_owned())
+                },
+            )
+        };
+        let scenario = parse("2016", ACTION).unwrap();
+        assert_eq!(scenario.profile, Profile::Firmware2016);
+        assert_eq!(scenario.cab.unwrap().text, ACTION);
+        let refusals = [
+            (parse("paper", ACTION), "a/ramp.toml:7: operator needs profile = \"2016\""),
+            (parse("2016", "[[action]]\n"), "a/ramp.toml:7: a/cab.toml:1: missing field `at_s`"),
+            (parse("2015", ACTION), "a/ramp.toml:6: no profile \"2015\"; give paper or 2016"),
+        ];
+        for (refused, starts) in refusals {
+            let error = refused.unwrap_err().to_string();
+            assert!(error.starts_with(starts), "{error}");
+        }
     }
 
     #[test]

@@ -23,7 +23,8 @@ pub struct Trace {
     pub joint_rad: Series<[f64; 2]>,
     /// Throttle and front joint target of the gateway.
     pub drive_target: Series<DriveCommand>,
-    /// Wheel speeds, rad/s; forward > 0.
+    /// Wheel speeds, rad/s; forward > 0. A machine that never says which way its wheels turn has them
+    /// without sign.
     pub wheel_speed_rad_s: Series<PerWheel<f64>>,
     /// State of the pendulum-arm ECU.
     pub arm_state: Series<EcuState>,

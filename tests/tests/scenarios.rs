@@ -57,6 +57,9 @@ scenarios! {
     reboot: "reboot",
     broken_wire: "broken-wire",
     false_stroke: "false-stroke",
+    cross_slope_2016: "2016-cross-slope",
+    pedal_2016: "2016-pedal",
+    bend_2016: "2016-bend",
 }
 
 #[test]

@@ -13,6 +13,8 @@ use crate::{Bound, Finding};
 pub struct RearFollows {
     /// How far off the ratio may be.
     pub within: f64,
+    /// Rear angle per front angle; the machine file's when left out.
+    pub ratio: Option<f64>,
 }
 
 /// A bend: the front joint is at least this far over.
@@ -21,13 +23,14 @@ const BEND_RAD: f64 = 0.05;
 const BAND_RAD: f64 = 0.0026;
 /// ... for this long: longer than the turning points of their swing, which takes some 25 s.
 const SETTLED_S: f64 = 6.0;
-
+/// Readings averaged before it is asked whether they stand: single ones are noisy.
+const AVERAGED: usize = 25;
 /// Where the joints have not settled, it is tried again this much later.
 const STRIDE_S: f64 = 0.5;
 
 impl RearFollows {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
-        let ratio = evidence.machine.articulation.rear_ratio;
+        let ratio = self.ratio.unwrap_or(evidence.machine.articulation.rear_ratio);
         let wanted = Bound::Near { value: ratio, tolerance: self.within };
         let what = "rear joint over front, settled in a bend";
         let ratios = settled_ratios(evidence);
@@ -50,8 +53,18 @@ fn settled_ratios(evidence: &Evidence<'_>) -> Vec<f64> {
         let speed = wheels.map_or(0.0, |w| mean_speed_m_s(&w.value, machine.wheels.radius_m));
         speed.abs() > threshold_m_s && joint.value[0].abs() > BEND_RAD
     };
-    let bends = stretches(trace.joint_rad.samples(), bending);
-    bends.into_iter().flat_map(ratios_in_bend).collect()
+    let joints = averaged(trace.joint_rad.samples());
+    stretches(&joints, bending).into_iter().flat_map(ratios_in_bend).collect()
+}
+
+/// Means of [`AVERAGED`] samples each, at the time of the middle one.
+fn averaged(samples: &[Sample<[f64; 2]>]) -> Vec<Sample<[f64; 2]>> {
+    let chunks = samples.chunks_exact(AVERAGED);
+    let middle = |chunk: &[Sample<[f64; 2]>]| {
+        let value = [mean(chunk, |v| v[0])?, mean(chunk, |v| v[1])?];
+        Some(Sample { at_s: chunk[AVERAGED / 2].at_s, value })
+    };
+    chunks.filter_map(middle).collect()
 }
 
 /// The spans of one bend that count, none overlapping.

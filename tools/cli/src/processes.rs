@@ -125,6 +125,12 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());
     }
+    add("--profile", setup.scenario.profile.to_string());
+    if let Some(cab) = &setup.scenario.cab {
+        let file = folder.join("operator.toml");
+        fs::write(&file, &cab.text)?;
+        add("--operator", file.display().to_string());
+    }
     if !setup.overlay.entries.is_empty() {
         let file = folder.join("effects.toml");
         fs::write(&file, setup.overlay.to_toml())?;

@@ -2,6 +2,7 @@
 
 mod hull;
 mod part;
+mod stance;
 mod tilt;
 mod tyre_part;
 

@@ -10,8 +10,8 @@ use crate::sensor_faults::gaussian;
 /// Full scale of the converter, mV, and its steps: 12 bits (assumed; the facts name neither).
 const FULL_SCALE_MV: f64 = 5_500.0;
 const STEPS: f64 = 4_095.0;
-/// Standard deviation of the noise on a line, mV: one step and a bit (assumed).
-const NOISE_MV: f64 = 1.5;
+/// Standard deviation of the noise on a line behind its low-pass, mV (assumed).
+const NOISE_MV: f64 = 0.5;
 /// Step of a frequency input, Hz (facts 4.8).
 const FREQUENCY_STEP_HZ: f64 = 0.1;
 

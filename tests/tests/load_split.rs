@@ -50,5 +50,5 @@ fn ground_pressure_control_keeps_the_load_together_and_levelling_alone_does_not(
     // 0.080 is what the empty machine's centre of mass allows.
     assert!(with.on_the_way < 0.10 && with.behind < 0.085, "{with:?}");
     assert!(without.on_the_way > 1.2 * with.on_the_way, "{with:?} {without:?}");
-    assert!(without.behind > 0.09, "{without:?}");
+    assert!(without.behind > with.behind, "{with:?} {without:?}");
 }

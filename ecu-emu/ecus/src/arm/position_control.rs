@@ -59,6 +59,7 @@ impl PositionControl {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
     use xt28_machine::Machine;
 
     use super::*;
@@ -86,5 +87,33 @@ mod tests {
         assert!((control.step(&gains, 200.0, 200.0) - 0.01).abs() < 1e-12);
         control.reset();
         assert_eq!(control.step(&gains, 200.0, 200.0), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn opening_and_integral_stay_within_their_bounds(
+            steps in prop::collection::vec((0.0..500.0_f64, 0.0..521.0_f64), 1..400)
+        ) {
+            let (gains, mut control) = (gains(), PositionControl::default());
+            for (target_mm, stroke_mm) in steps {
+                let opening = control.step(&gains, target_mm, stroke_mm);
+                prop_assert!(opening.abs() <= gains.opening_max);
+                prop_assert!(control.integral_mm_s.abs() <= gains.windup_mm_s);
+            }
+        }
+
+        /// The windup limit is worth 2.5 mm of error: so far beyond its target an arm turns back, no
+        /// matter for how long it was held away from it.
+        #[test]
+        fn an_arm_that_was_held_turns_back_2_5_mm_beyond(
+            error_mm in 10.0..250.0_f64,
+            ticks in 1..20_000_usize,
+        ) {
+            let (gains, mut control) = (gains(), PositionControl::default());
+            for _ in 0..ticks {
+                control.step(&gains, 250.0, 250.0 - error_mm);
+            }
+            prop_assert!(control.step(&gains, 250.0, 252.6) < 0.0);
+        }
     }
 }

@@ -61,15 +61,19 @@ impl Ecus {
         }
     }
 
-    /// Pulls the reset line of the arm ECU, of the drive ECU, for a moment. The firmware of 2016 has
-    /// no life but one.
+    /// Pulls the reset line of the arm ECU, of the drive ECU, for a moment.
     pub(crate) fn reset(&mut self, now: SimTime, [arm, drive]: [bool; 2]) {
-        let Self::Paper(ecus) = self else { return };
-        if arm {
-            ecus.0.reset(now);
-        }
-        if drive {
-            ecus.1.reset(now);
+        match self {
+            Self::Paper(ecus) => {
+                let (arm_ecu, drive_ecu) = &mut **ecus;
+                arm.then(|| arm_ecu.reset(now));
+                drive.then(|| drive_ecu.reset(now));
+            }
+            Self::Firmware2016(ecus) => {
+                let (arm_ecu, drive_ecu) = &mut **ecus;
+                arm.then(|| arm_ecu.reset(now));
+                drive.then(|| drive_ecu.reset(now));
+            }
         }
     }
 

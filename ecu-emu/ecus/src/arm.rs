@@ -283,10 +283,12 @@ impl ArmEcu {
 
 impl ArmOutputs {
     /// As an ECU without a supply leaves it: no current, no frame.
-    fn go_dark(&mut self) {
+    pub(crate) fn go_dark(&mut self) {
         self.solenoid_a_ma = PerWheel::splat(0.0);
         self.solenoid_b_ma = PerWheel::splat(0.0);
+        self.accumulator_on = PerWheel::splat(false);
         self.can1.clear();
         self.can2.clear();
+        self.can4.clear();
     }
 }

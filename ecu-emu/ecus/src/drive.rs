@@ -331,7 +331,7 @@ impl DriveEcu {
 
 impl DriveOutputs {
     /// As an ECU without a supply leaves it: no current, no frame, the brake's spring closed.
-    fn go_dark(&mut self) {
+    pub(crate) fn go_dark(&mut self) {
         let [can1, can3, can4] = [&mut self.can1, &mut self.can3, &mut self.can4].map(|outbox| {
             outbox.clear();
             core::mem::take(outbox)

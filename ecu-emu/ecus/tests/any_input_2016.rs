@@ -56,7 +56,7 @@ proptest! {
         frames in prop::collection::vec((any_port(), any_frame()), 0..40),
         strokes in six(),
         pressures in prop::array::uniform2(six()),
-        supply_mv in any::<f64>(),
+        supply_mv in 9_500.0..60_000.0,
         all_quirks in any::<bool>(),
         ticks_between in 1_u64..200,
     ) {

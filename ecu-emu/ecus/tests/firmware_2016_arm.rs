@@ -312,3 +312,26 @@ fn the_force_part_waits_for_half_a_percent_and_takes_a_tick() {
     assert!(arm.u_ma()[0] < -20, "{:?}", arm.u_ma());
     assert!(arm.u_ma()[1] > 0, "its neighbour carries too much");
 }
+
+/// Below 8 V it goes dark, and wakes with all forgotten: no gains, no mode, five seconds to wait.
+#[test]
+fn a_brown_out_shuts_the_valves_and_forgets_the_gains() {
+    let mut arm = levelling(11);
+    arm.until(13.0);
+    arm.pins.stroke_mv = PerWheel::splat(stroke_mv(240));
+    arm.tick();
+    assert_eq!(arm.u_ma(), [-16; 6]);
+    arm.pins.supply_mv = 6_000.0;
+    arm.tick();
+    assert_eq!((arm.u_ma(), arm.out.can1.frames().len()), ([0; 6], 0));
+    arm.pins.supply_mv = 24_000.0;
+    arm.ticks(30);
+    let started = arm.out.can1.frames().len();
+    assert_eq!((started, arm.is_levelling(), arm.u_ma()), (32, false, [0; 6]));
+    arm.press(18);
+    assert!(!arm.is_levelling(), "too early");
+    arm.ticks(500);
+    arm.press(18);
+    arm.ticks(600);
+    assert_eq!((arm.is_levelling(), arm.u_ma()), (true, [0; 6]), "no gains");
+}

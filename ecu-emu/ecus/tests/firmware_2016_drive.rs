@@ -204,3 +204,20 @@ fn measured_currents_come_in_steps_of_3_ma() {
     assert_eq!(current.pump1_b_ma, (drive.out.pump_ma[1] / 3.0).floor() * 3.0);
     assert_eq!(motors.motor1_ma, (drive.out.motor_ma.0[0] / 3.0).floor() * 3.0);
 }
+
+/// A reset puts it where power-up does: in neutral, and with the parking brake released.
+#[test]
+fn a_reset_brakes_while_dark_and_then_lets_go() {
+    let mut drive = drive();
+    drive.press(12);
+    drive.gas(0.5);
+    drive.ticks(500);
+    assert!(drive.out.pump_ma[1] > 0.0);
+    drive.ecu.reset(SimTime::from_millis(drive.ms));
+    drive.tick();
+    assert_eq!((drive.out.pump_ma, drive.out.brake_released), ([0.0; 4], false));
+    assert!(drive.out.can1.frames().is_empty() && drive.out.can4.frames().is_empty());
+    drive.ticks(30);
+    assert_eq!((drive.status().drive_mode, drive.out.brake_released), (NEUTRAL, true));
+    assert_eq!(drive.out.pump_ma, [0.0; 4]);
+}

@@ -13,7 +13,7 @@ use core::time::Duration;
 
 use xt28_dbc::messages::{MachineStatus, TuneAttitude, TuneForce, TuneHeight, TuneReference};
 use xt28_dbc::{CanId, Frame};
-use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
+use xt28_machine::{Linkage, Machine, PerWheel, SimTime, Wheel};
 
 use self::attitude::Attitude;
 use self::forces::ForceCode;
@@ -25,6 +25,7 @@ use super::Quirks;
 use super::input_watch::InputWatch;
 use super::whole::cut;
 use crate::pins::read_imu;
+use crate::power::{Power, Running};
 use crate::{ArmOutputs, ArmPins, Port};
 
 /// Levelling waits so long after power-up.
@@ -42,6 +43,8 @@ const STATUS_DEADLINE: Duration = Duration::from_millis(200);
 /// unit on [`Port::Can2`] and tuning frames on [`Port::Can1`]. No frame commands an arm.
 #[derive(Clone, Debug)]
 pub struct ArmEcu2016 {
+    power: Power,
+    linkage: Linkage,
     quirks: Quirks,
     sensing: Sensing,
     attitude: Attitude,
@@ -71,17 +74,23 @@ impl ArmEcu2016 {
     /// An ECU just switched on.
     #[must_use]
     pub fn new(machine: &Machine, quirks: Quirks) -> Self {
+        Self::boot(machine.linkage(), quirks)
+    }
+
+    fn boot(linkage: Linkage, quirks: Quirks) -> Self {
         let stroke_watch = PerWheel::from_fn(|w| match w {
             Wheel::Fr | Wheel::Fl => InputWatch::front_position(),
             _ => InputWatch::default(),
         });
         Self {
+            power: Power::default(),
+            linkage,
             quirks,
             sensing: Sensing::new(quirks),
             attitude: Attitude::default(),
-            force_code: ForceCode::new(machine, quirks),
+            force_code: ForceCode::new(linkage, quirks),
             pad: LeftPad::new(quirks),
-            modes: Modes::new(Levelling::new(machine, quirks)),
+            modes: Modes::new(Levelling::new(linkage, quirks)),
             u_ma: PerWheel::splat(0),
             drive: DriveSeen::default(),
             brake_seen: 0,
@@ -95,6 +104,9 @@ impl ArmEcu2016 {
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
     pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        if !self.power.is_on() {
+            return;
+        }
         match port {
             Port::Can1 => self.tune(frame),
             Port::Can2 => {
@@ -112,8 +124,20 @@ impl ArmEcu2016 {
         }
     }
 
+    /// Pulls the reset line for a moment: the ECU goes dark and forgets all.
+    pub fn reset(&mut self, now: SimTime) {
+        self.power.reset(now);
+    }
+
     /// One task period of 10 ms. `out` is cleared and filled.
     pub fn tick(&mut self, now: SimTime, pins: &ArmPins, out: &mut ArmOutputs) {
+        match self.power.step(now, pins.supply_mv) {
+            Running::On => {}
+            Running::Started(_) => {
+                *self = Self { power: self.power, ..Self::boot(self.linkage, self.quirks) };
+            }
+            Running::Off => return out.go_dark(),
+        }
         out.can1.clear();
         out.can2.clear();
         out.can4.clear();

@@ -23,6 +23,7 @@ use self::sequence::{DriveState, FULL};
 use self::slip::Slip;
 use self::steering::{SteerInputs, Steering};
 use super::{CabPins, Quirks};
+use crate::power::{Power, Running};
 use crate::{DriveOutputs, DrivePins, Port};
 
 /// Above this filtered pedal no drive state is left, below it the brake may be set, per mille.
@@ -34,6 +35,7 @@ const PEDAL_LOW: f64 = 150.0;
 /// what falls silent keeps its last value.
 #[derive(Clone, Debug)]
 pub struct DriveEcu2016 {
+    power: Power,
     quirks: Quirks,
     pad: RightPad,
     pedal: Pedal,
@@ -55,6 +57,7 @@ impl DriveEcu2016 {
     #[must_use]
     pub fn new(quirks: Quirks) -> Self {
         Self {
+            power: Power::default(),
             quirks,
             pad: RightPad::new(quirks),
             pedal: Pedal::default(),
@@ -71,6 +74,9 @@ impl DriveEcu2016 {
 
     /// A frame that arrived at `port`. Frames that are not for this ECU are left alone.
     pub fn on_frame(&mut self, now: SimTime, port: Port, frame: &Frame) {
+        if !self.power.is_on() {
+            return;
+        }
         match port {
             Port::Can2 => self.pad.on_frame(now, frame),
             Port::Can3 => self.engine.on_frame(frame),
@@ -78,8 +84,18 @@ impl DriveEcu2016 {
         }
     }
 
+    /// Pulls the reset line for a moment: the ECU goes dark and forgets all.
+    pub fn reset(&mut self, now: SimTime) {
+        self.power.reset(now);
+    }
+
     /// One task period of 10 ms. `out` is cleared and filled.
     pub fn tick(&mut self, now: SimTime, pins: &DrivePins, cab: &CabPins, out: &mut DriveOutputs) {
+        match self.power.step(now, pins.supply_mv) {
+            Running::On => {}
+            Running::Started(_) => *self = Self { power: self.power, ..Self::new(self.quirks) },
+            Running::Off => return out.go_dark(),
+        }
         out.can1.clear();
         out.can3.clear();
         out.can4.clear();

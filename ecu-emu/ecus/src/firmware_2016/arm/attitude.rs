@@ -91,3 +91,47 @@ impl Attitude {
         self.acceleration
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(quirks: Quirks, acceleration: [f64; 3]) -> [f64; 2] {
+        let mut attitude = Attitude::default();
+        attitude.on_reading(ImuReading::Acceleration(acceleration));
+        (0..5000).for_each(|_| attitude.step(quirks));
+        attitude.angles_deg()
+    }
+
+    /// Facts 5: a still angle stops up to 0.20 deg (roll) or 0.10 deg (pitch) short.
+    #[test]
+    fn whole_thousandths_stop_short_and_fractions_do_not() {
+        let lean_deg = 0.1_f64.atan().to_degrees();
+        let short = |quirks| settled(quirks, [100.0, -100.0, 1000.0]).map(|angle| lean_deg - angle);
+        let [pitch, roll] = short(Quirks::firmware());
+        assert!((0.09..=0.1001).contains(&pitch) && (0.19..=0.2001).contains(&roll));
+        assert!(short(Quirks::none()).iter().all(|short| short.abs() < 1e-9));
+    }
+
+    /// Facts 5: 2.0 s and 1.0 s.
+    #[test]
+    fn the_time_constants_are_two_seconds_and_one() {
+        let fractions = Quirks { filters_cut_off: false, ..Quirks::firmware() };
+        let mut attitude = Attitude::default();
+        attitude.on_reading(ImuReading::Acceleration([100.0, -100.0, 1000.0]));
+        let share = |attitude: &Attitude| {
+            attitude.angles_deg().map(|angle| angle / 0.1_f64.atan().to_degrees())
+        };
+        (0..100).for_each(|_| attitude.step(fractions));
+        let [pitch, _] = share(&attitude);
+        (0..100).for_each(|_| attitude.step(fractions));
+        let [_, roll] = share(&attitude);
+        let one = 1.0 - (-1.0_f64).exp();
+        assert!((pitch - one).abs() < 3e-3 && (roll - one).abs() < 3e-3, "{pitch} {roll}");
+    }
+
+    #[test]
+    fn without_weight_nothing_changes() {
+        assert_eq!(settled(Quirks::firmware(), [5.0, 5.0, 0.0]), [0.0; 2]);
+    }
+}

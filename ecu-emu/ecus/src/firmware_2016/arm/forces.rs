@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use xt28_machine::{Axle, Linkage, Machine, PerWheel, Side, Wheel};
+use xt28_machine::{Axle, Linkage, PerWheel, Side, Wheel};
 
 use super::sensing::Readings;
 use crate::firmware_2016::Quirks;
@@ -46,8 +46,7 @@ pub(super) struct ForceCode {
 }
 
 impl ForceCode {
-    pub(super) fn new(machine: &Machine, quirks: Quirks) -> Self {
-        let linkage = machine.linkage();
+    pub(super) const fn new(linkage: Linkage, quirks: Quirks) -> Self {
         let short = quirks.force_closed_length_0_82;
         Self { linkage: if short { linkage.with_closed_length(CLOSED_LENGTH_M) } else { linkage } }
     }

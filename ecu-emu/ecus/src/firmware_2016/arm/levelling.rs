@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use xt28_machine::{Axle, Linkage, Machine, PerWheel, Side, SimTime, Wheel};
+use xt28_machine::{Axle, Linkage, PerWheel, Side, SimTime, Wheel};
 
 use super::forces::{FRONT_TO_MIDDLE_M, Forces, WHEELBASE_M};
 use crate::firmware_2016::Quirks;
@@ -103,10 +103,10 @@ pub(super) struct Levelling {
 }
 
 impl Levelling {
-    pub(super) fn new(machine: &Machine, quirks: Quirks) -> Self {
+    pub(super) fn new(linkage: Linkage, quirks: Quirks) -> Self {
         Self {
             quirks,
-            linkage: machine.linkage(),
+            linkage,
             gains: Gains::default(),
             tuning: Tuning::default(),
             offset_mm: 0.0,
@@ -241,6 +241,8 @@ impl DeadBand {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Machine;
+
     use super::*;
 
     /// Facts 3.5: 0.9 % at 10 ms, half at 2.5 s, 99.1 % just before 5 s, then 1.
@@ -266,7 +268,7 @@ mod tests {
     /// The column of mA per wheel in facts 3.5.
     #[test]
     fn presets_give_the_published_currents() {
-        let mut law = Levelling::new(&Machine::xt28(), Quirks::firmware());
+        let mut law = Levelling::new(Machine::xt28().linkage(), Quirks::firmware());
         let rows = [
             (10, 0.339, [11.9, 0.46, 11.5], 13.3),
             (11, 1.694, [35.8, 1.38, 34.6], 26.7),

@@ -100,3 +100,52 @@ pub(super) fn kept(value: f64, quirks: Quirks) -> f64 {
 fn mean(values: &PerWheel<i32>) -> i32 {
     values.0.iter().sum::<i32>() / 6
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pins(stroke_mv: f64, pressure_mv: f64) -> ArmPins {
+        ArmPins {
+            stroke_mv: PerWheel::splat(stroke_mv),
+            pressure_a_mv: PerWheel::splat(pressure_mv),
+            pressure_b_mv: PerWheel::splat(5000.0 - pressure_mv),
+            supply_mv: 24_000.0,
+        }
+    }
+
+    /// Facts 3.2: 0.12 mm for each mV, cut off; 4.8 V is 521 mm.
+    #[test]
+    fn strokes_are_cut_to_whole_millimetres() {
+        for (mv, mm) in [(500.0, 0), (508.0, 0), (509.0, 1), (2500.0, 242), (4800.0, 521)] {
+            let stroke_mm = Sensing::new(Quirks::firmware()).step(&pins(mv, 500.0)).stroke_mm;
+            assert_eq!(stroke_mm, PerWheel::splat(mm), "{mv} mV");
+        }
+    }
+
+    /// Facts 3.2: 50 mm/s read as 18 to 20, 100 as 40, 200 as 90, 300 as 140.
+    #[test]
+    fn rates_read_less_than_half() {
+        for (mm_s, counts) in [(50, 18..=20), (100, 40..=40), (200, 90..=90), (300, 140..=140)] {
+            let mut sensing = Sensing::new(Quirks::firmware());
+            let rates = (0..150).map(|tick| {
+                let mm = f64::from(tick * mm_s / 100) + 0.5;
+                sensing.step(&pins((mm / 485.0 * 4000.0 + 500.0).round(), 500.0)).rate.0[0]
+            });
+            let last: Vec<i32> = rates.skip(148).collect();
+            assert!(last.iter().all(|rate| counts.contains(rate)), "{mm_s} mm/s: {last:?}");
+        }
+    }
+
+    /// Facts 3.2: a rise to 5000 kPa stalls at 4984, a fall comes down exactly.
+    #[test]
+    fn a_rising_pressure_stalls_and_a_falling_one_settles() {
+        let mut sensing = Sensing::new(Quirks::firmware());
+        let settle = |sensing: &mut Sensing, mv| {
+            (0..600).map(|_| sensing.step(&pins(2500.0, mv))).last().expect("600 ticks")
+        };
+        assert_eq!(settle(&mut sensing, 1300.0).pressure_a_kpa, PerWheel::splat(4984));
+        settle(&mut sensing, 3000.0);
+        assert_eq!(settle(&mut sensing, 1300.0).pressure_a_kpa, PerWheel::splat(5000));
+    }
+}

@@ -27,6 +27,9 @@ pub(crate) struct SecondEngine {
     /// How often each run of the benchmark is timed; the figure is the median
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     repeats: u32,
+    /// Compare in this manoeuvre alone
+    #[arg(long, value_name = "NAME")]
+    manoeuvre: Option<String>,
     /// An argument passed on to MuJoCo's side in the comparison, such as --mujoco=--impratio=10
     #[arg(long, value_name = "ARG", allow_hyphen_values = true)]
     mujoco: Vec<String>,
@@ -59,7 +62,7 @@ impl SecondEngine {
         let wanted = |part| self.only.is_none_or(|only| only == part);
         if wanted(Part::Compare) {
             for ours in programs.ours()? {
-                comparison::print(&programs, ours, self.rate, &self.mujoco)?;
+                comparison::print(&programs, ours, self)?;
             }
         }
         if wanted(Part::Bench) {

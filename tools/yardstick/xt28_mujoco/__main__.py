@@ -29,12 +29,13 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--machine", type=Path, required=True, help="the machine file")
     parser.add_argument("--manoeuvres", type=Path, required=True, help="the manoeuvres' file")
     parser.add_argument("--grid", type=Path, help="heights as an ESRI ASCII grid; level without")
+    parser.add_argument("--block", type=Path, help="a ramp's terrain file, instead of --grid")
     parser.add_argument("--start", default="", help="x,y,z,yaw,roll,pitch to start from")
     parser.add_argument("--rate", type=int, default=120, help="steps per second")
     for name in ("integrator", "cone", "solver"):
         parser.add_argument(f"--{name}", default=getattr(Settings, name))
-    for name in ("impratio", "impedance"):
-        parser.add_argument(f"--{name}", type=float, default=getattr(Settings, name))
+    for name in ("impratio", "impedance", "tyre_share"):
+        parser.add_argument(f"--{name.replace('_', '-')}", type=float, default=getattr(Settings, name))
     return parser.parse_args()
 
 
@@ -44,9 +45,19 @@ def main() -> None:
     machine = Machine(args.machine)
     manoeuvre = Manoeuvre(args.manoeuvres, args.manoeuvre)
     settings = Settings(
-        args.rate, args.integrator, args.cone, args.solver, args.impratio, args.impedance
+        rate_hz=args.rate,
+        integrator=args.integrator,
+        cone=args.cone,
+        solver=args.solver,
+        impratio=args.impratio,
+        impedance=args.impedance,
+        tyre_share=args.tyre_share,
     )
-    ground = terrain.read(args.grid) if args.grid else None
+    ground = None
+    if args.block:
+        ground = terrain.read_ramp(args.block)
+    elif args.grid:
+        ground = terrain.read(args.grid)
     vehicle = Vehicle(machine, settings, ground, manoeuvre.start_stroke_m)
     if args.start:
         vehicle.place(*map(float, args.start.split(",")))

@@ -1,4 +1,4 @@
-"""The MuJoCo model of the machine: 3 frames, 6 arms, 6 wheels; 26 freedoms less none but hinges'.
+"""The MuJoCo model of the machine: 3 frames, 6 arms, 6 wheels in 20 freedoms.
 
 Signs of every hinge are the bench's: an arm extends, a joint bends left, a wheel rolls forward at
 positive angles and rates. Frames touch nothing; a wheel is a sphere that meets the ground only.
@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from .machine import GRAVITY_M_S2, REFERENCE_STROKE_M, WHEELS, Machine
-from .terrain import Grid
+from .terrain import Block, Grid
 
 FRAMES = ("front", "middle", "rear")
 
@@ -27,9 +27,12 @@ class Settings:
     impratio: float = 1.0
     # Share of a contact that is constraint; its inverse part is a mass that the tyre does not have.
     impedance: float = 0.3
+    # Stiffness and damping of one contact as a share of the tyre's. On a grid MuJoCo gives a wheel
+    # four to seven contacts, each as stiff as a tyre; a fifth makes the sum about right.
+    tyre_share: float = 1.0
 
 
-def build(machine: Machine, settings: Settings, ground: Grid | None) -> mujoco.MjModel:
+def build(machine: Machine, settings: Settings, ground: Grid | Block | None) -> mujoco.MjModel:
     """Compiles the model; its tyres have the machine file's stiffness and damping."""
     arms = {axle: _arms(machine, axle) for axle in range(3)}
     frames = _frame(machine, 0, arms[0] + _frame(machine, 1, arms[1] + _frame(machine, 2, arms[2])))
@@ -44,7 +47,7 @@ def build(machine: Machine, settings: Settings, ground: Grid | None) -> mujoco.M
       <worldbody>{geom}{frames}</worldbody>
     </mujoco>"""
     model = mujoco.MjModel.from_xml_string(text)
-    if ground is not None:
+    if isinstance(ground, Grid):
         _fill(model, ground)
     _tyres(model, machine, settings)
     return model
@@ -113,10 +116,17 @@ def _arm(machine: Machine, axle: int, wheel: str) -> str:
     </body>"""
 
 
-def _ground(ground: Grid | None) -> tuple[str, str]:
-    touches = 'name="ground" contype="1" conaffinity="2" condim="3"'
+def _ground(ground: Grid | Block | None) -> tuple[str, str]:
+    touches = 'contype="1" conaffinity="2" condim="3"'
+    plane = f'<geom {touches} type="plane" size="0 0 1"/>'
     if ground is None:
-        return "", f'<geom {touches} type="plane" size="0 0 1"/>'
+        return "", plane
+    if isinstance(ground, Block):
+        corners = _numbers(number for corner in ground.corners_m for number in corner)
+        return (
+            f'<mesh name="block" vertex="{corners}"/>',
+            f'{plane}<geom {touches} type="mesh" mesh="block"/>',
+        )
     rows, columns = ground.height_m.shape
     low, high = float(ground.height_m.min()), float(ground.height_m.max())
     # A base under the lowest point, so that a wheel pressed in is still above something.
@@ -146,6 +156,6 @@ def _tyres(model: mujoco.MjModel, machine: Machine, settings: Settings) -> None:
     for wheel in WHEELS:
         geom = model.geom(f"wheel_{wheel}").id
         inverse_kg = model.body_invweight0[model.geom_bodyid[geom], 0]
-        scale = (1.0 - d) * inverse_kg
+        scale = settings.tyre_share * (1.0 - d) * inverse_kg
         model.geom_solref[geom] = (-v.tyre_stiffness_n_m * scale, -v.tyre_damping_n_s_m * scale)
         model.geom_solimp[geom] = (d, d, 1e-3, 0.5, 2.0)

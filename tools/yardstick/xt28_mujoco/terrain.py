@@ -1,5 +1,11 @@
-"""The ground both engines stand on: level, or the ASCII grid that our side wrote."""
+"""The ground both engines stand on: level, or the ASCII grid that our side wrote; a ramp as a block.
 
+On a grid MuJoCo gives a wheel a contact with each triangle that it cuts, four to seven of them on
+level ground. A ramp's terrain file can be built as one convex block instead, which has none but the
+contacts that are there.
+"""
+
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,3 +48,22 @@ def read(path: Path) -> Grid:
         spacing_m=float(header["cellsize"]),
         height_m=rows[::-1].copy(),
     )
+
+
+@dataclass(frozen=True)
+class Block:
+    """A convex block on level ground, by its corners."""
+
+    corners_m: tuple[tuple[float, float, float], ...]
+
+
+def read_ramp(path: Path) -> Block:
+    """Reads a terrain file of one ramp; the block goes on half a metre below the ground."""
+    ramp = tomllib.loads(path.read_text(encoding="utf-8"))
+    if ramp.get("kind") != "ramp":
+        raise ValueError(f"{path}: not a terrain of one ramp")
+    foot, crest, end, out = ramp["x_m"]
+    top, below = ramp["height_m"], -0.5
+    outline = ((foot, 0.0), (crest, top), (end, top), (out, 0.0), (foot, below), (out, below))
+    sides = (ramp["y_min_m"], ramp["y_max_m"])
+    return Block(corners_m=tuple((x, y, z) for y in sides for x, z in outline))

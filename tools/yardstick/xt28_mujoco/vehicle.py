@@ -10,13 +10,19 @@ from .laws import ArmLocks, Drive, JointLocks, rolling_drag_nm
 from .machine import REFERENCE_STROKE_M, WHEELS, Machine
 from .manoeuvre import Actuation
 from .model import Settings, build
-from .terrain import Grid
+from .terrain import Block, Grid
 
 
 class Vehicle:
     """The nominal machine with its front axle at the origin, heading east."""
 
-    def __init__(self, machine: Machine, settings: Settings, ground: Grid | None, stroke_m: float):
+    def __init__(
+        self,
+        machine: Machine,
+        settings: Settings,
+        ground: Grid | Block | None,
+        stroke_m: float,
+    ):
         self._machine = machine
         self.model = build(machine, settings, ground)
         self.data = mujoco.MjData(self.model)

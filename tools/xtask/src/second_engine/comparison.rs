@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use super::SecondEngine;
 use super::engine::Engine;
 use super::programs::{Job, Programs};
 use super::trajectory::KINDS;
@@ -11,36 +12,40 @@ use crate::workspace::Outcome;
 const RECORDED: [&str; 3] = ["settle", "straight", "turn"];
 /// Steps per second of a recording: fine enough that the step does not show.
 const RECORDED_HZ: u32 = 2000;
-/// MuJoCo lets a wheel creep under a side load in proportion to it. This makes the creep a hundred
+/// MuJoCo lets a wheel creep under a side load in proportion to it. This makes the creep a thousand
 /// times slower, so that what is left is dry friction, as ours is.
-const STIFF_FRICTION: &str = "--impratio=100";
+const STIFF_FRICTION: &str = "--impratio=1000";
 
 /// Prints one engine's tables: against MuJoCo as it comes, and with friction that hardly creeps;
 /// or, where arguments for MuJoCo are given, against that.
 ///
 /// # Errors
 /// When a side cannot be run.
-pub(crate) fn print(
-    programs: &Programs,
-    ours: Engine,
-    rate_hz: u32,
-    mujoco: &[String],
-) -> Outcome<()> {
-    if mujoco.is_empty() {
-        table(programs, ours, rate_hz, &[])?;
-        table(programs, ours, rate_hz, &[STIFF_FRICTION.to_owned()])
+pub(crate) fn print(programs: &Programs, ours: Engine, asked: &SecondEngine) -> Outcome<()> {
+    if asked.mujoco.is_empty() {
+        table(programs, ours, asked, &[])?;
+        table(programs, ours, asked, &[STIFF_FRICTION.to_owned()])
     } else {
-        table(programs, ours, rate_hz, mujoco)
+        table(programs, ours, asked, &asked.mujoco)
     }
 }
 
 /// A row each manoeuvre, largest distance and RMSE each kind of signal.
-fn table(programs: &Programs, ours: Engine, rate_hz: u32, mujoco: &[String]) -> Outcome<()> {
+fn table(
+    programs: &Programs,
+    ours: Engine,
+    asked: &SecondEngine,
+    mujoco: &[String],
+) -> Outcome<()> {
+    let rate_hz = asked.rate;
     println!("\n{} against {} at {rate_hz} Hz, max / RMSE\n", ours.name(), mujoco_name(mujoco));
     let names: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
     println!("| manoeuvre | {} |", names.join(" | "));
     println!("|---|{}", "---|".repeat(KINDS.len()));
     for (manoeuvre, terrain) in manoeuvres(programs)? {
+        if asked.manoeuvre.as_ref().is_some_and(|only| *only != manoeuvre) {
+            continue;
+        }
         let job = Job { manoeuvre: &manoeuvre, terrain: &terrain, rate_hz, mujoco };
         let a = programs.run(ours, &job)?.trajectory;
         let b = programs.run(Engine::MujocoElliptic, &job)?.trajectory;

@@ -57,6 +57,10 @@ impl Programs {
             return Err("cargo could not build the examples of xt28-sim".into());
         }
         let grids = workspace.target.join("second-engine");
+        // Grids of another day may be of other terrain files.
+        if grids.exists() {
+            fs::remove_dir_all(&grids)?;
+        }
         fs::create_dir_all(&grids)?;
         Ok(Self {
             root: workspace.root.clone(),
@@ -173,11 +177,16 @@ fn python(workspace: &Workspace) -> Outcome<PathBuf> {
         venv.display()
     );
     let remedy = "install python3 (3.11 or later) with venv, and let it reach PyPI";
-    let mut steps = [Command::new("python3"), Command::new(&python)];
-    steps[0].args(["-m", "venv"]).arg(&venv);
-    steps[1]
-        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"])
-        .arg(&pins);
+    let mut steps = Vec::new();
+    if !python.exists() {
+        let mut create = Command::new("python3");
+        create.args(["-m", "venv"]).arg(&venv);
+        steps.push(create);
+    }
+    let mut install = Command::new(&python);
+    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"]);
+    install.arg(&pins);
+    steps.push(install);
     for step in &mut steps {
         if !step.status().is_ok_and(|status| status.success()) {
             return Err(format!("{step:?} failed; {remedy}").into());

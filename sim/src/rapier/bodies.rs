@@ -10,7 +10,7 @@ use super::hull_watch::HullWatch;
 use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
 use super::shapes::Ground;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
-use crate::{Parts, REFERENCE_STROKE_M, Terrain};
+use crate::{Parts, Terrain};
 
 /// Index of a hinge's own angle among a joint's six coordinates.
 const HINGE: usize = 3;
@@ -84,7 +84,7 @@ impl Bodies for RapierBodies {
         };
         bodies.free_root();
         bodies.index_hinges();
-        bodies.place(parts, stroke_m);
+        bodies.place(parts, terrain, stroke_m);
         bodies
     }
 
@@ -235,19 +235,24 @@ impl RapierBodies {
         multibody.damping_mut().fill(0.0);
     }
 
-    /// Swings the arms to their strokes and sets the machine down on its lowest wheels.
+    /// Swings the arms to their strokes and sets the machine down on the ground under its wheels.
     #[allow(clippy::cast_possible_truncation)]
-    fn place(&mut self, parts: &Parts, stroke_m: PerWheel<f64>) {
-        let reference_drop_m = parts.linkage.at_stroke(REFERENCE_STROKE_M).drop_m;
+    fn place(&mut self, parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) {
         let mut move_by = vec![0.0; self.multibody().ndofs()];
-        let mut lift_m = f64::MIN;
         for wheel in Wheel::ALL {
             let angle = self.extends[wheel] * parts.arm_angle_rad(stroke_m[wheel]);
             move_by[self.arm_hinges[wheel].dof] = angle as Real;
-            let drop_m = parts.linkage.at_stroke(stroke_m[wheel]).drop_m;
-            lift_m = lift_m.max(drop_m - reference_drop_m);
         }
-        move_by[2] = lift_m as Real;
+        let stance = parts.stance(terrain, stroke_m);
+        let [forward, left, up] = stance.axes.map(vector);
+        let turn = Rotation::from_mat3(&Matrix::from_cols(forward, left, up)).to_scaled_axis();
+        // The root's coordinates are those of its centre of mass.
+        let com = origin_m(parts, 0);
+        let moved = stance.world(com);
+        for axis in 0..3 {
+            move_by[axis] = (moved[axis] - com[axis]) as Real;
+            move_by[3 + axis] = turn[axis];
+        }
         let world = &mut self.world;
         let multibody = multibody_of(&mut world.multibody_joints, self.frames[0]);
         multibody.apply_displacements(&move_by);

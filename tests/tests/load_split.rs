@@ -1,7 +1,9 @@
 //! Six arms under three stiff frames can carry a weight in many ways: the ground-pressure controller
 //! keeps them from drifting into an uneven one.
+//!
+//! `cargo test -p xt28-scenarios --test load_split -- --nocapture` prints both runs.
 
-use std::io;
+use std::io::{self, Write};
 use std::time::Duration;
 
 use xt28_machine::{Levelling, Machine, PerWheel};
@@ -45,6 +47,7 @@ fn deviation(force_n: &PerWheel<f64>) -> f64 {
 fn ground_pressure_control_keeps_the_load_together_and_levelling_alone_does_not() {
     let with = over_the_ramp([1.0; 4]);
     let without = over_the_ramp([1.0, 1.0, 1.0, 0.0]);
+    writeln!(io::stderr(), "with {with:.3?}\nwithout {without:.3?}").unwrap();
     // Level both times: the split cannot be seen from the chassis.
     assert!(with.roll_deg < 1.0 && without.roll_deg < 4.0, "{with:?} {without:?}");
     // 0.080 is what the empty machine's centre of mass allows.

@@ -11,6 +11,7 @@ mod contact;
 mod factor;
 mod ground;
 mod newton;
+mod patch;
 mod pose;
 mod spatial;
 #[cfg(test)]
@@ -18,7 +19,7 @@ mod tests;
 mod touch;
 mod tree;
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
 use self::contact::{Body, Contact};
@@ -52,18 +53,17 @@ pub struct ReducedBodies {
 impl Bodies for ReducedBodies {
     fn new(parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
         let tree = Tree::new(parts);
-        let reference_z = |arm: &tree::Arm| (arm.pivot + arm.to_wheel).z;
-        let mut state = State {
-            position: DVec3::ZERO,
-            turn: DQuat::IDENTITY,
+        let stance = parts.stance(terrain, stroke_m);
+        let [x, y, z] = stance.axes.map(DVec3::from);
+        let state = State {
+            position: stance.position_m.into(),
+            turn: DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize(),
             joint_rad: [0.0; 2],
             roll_rad: 0.0,
+            patch_m: [[0.0; 2]; 6],
             arm_rad: stroke_m.map(|stroke_m| parts.arm_angle_rad(stroke_m)).0,
             rate: [0.0; FREEDOMS],
         };
-        let pose = Pose::new(&tree, &state);
-        let lift = |i: usize| reference_z(&tree.arms[i]) - pose.arm[i].wheel.z;
-        state.position.z = (0..6).map(lift).fold(f64::MIN, f64::max);
         Self {
             tree,
             search: Search::new(terrain.clone()),
@@ -99,7 +99,13 @@ impl Bodies for ReducedBodies {
         let mut contacts = core::mem::take(&mut self.contacts);
         self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
         let balance = self.balance(&pose, &inertias, loads, dt_s);
+        let patches: [_; 6] =
+            core::array::from_fn(|i| self.tree.patch(i, &pose, &self.state, dt_s));
         self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
+        for (i, patch) in patches.iter().enumerate() {
+            let own = contacts.iter().filter(|contact| contact.body == Body::Wheel(i));
+            self.state.patch_m[i] = patch.deflection_m(own);
+        }
         self.state.advance(dt_s);
         self.note_forces(&contacts, dt_s);
         self.contacts = contacts;

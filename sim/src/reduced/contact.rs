@@ -3,14 +3,14 @@
 //! Implicit: the impulse is a function of the velocity at the step's end. A tyre's force is
 //! max(0, k d - c d') with the depth d where the step ends, so the damper acts from the moment at
 //! which the point is c/k ahead of touching. That makes the force continuous when a wheel comes
-//! down. Friction is isotropic, at most mu times the normal force. Below that the contact creeps in
-//! proportion to the force ([`CREEP_N_S_M`]), as every solver of rigid friction must let it or not
-//! know its force.
+//! down. Friction is isotropic, at most mu times the normal force. What it is below that is the
+//! contact's [`Grip`]: springs of a tyre's patch, or a creep in proportion to the force, as every
+//! solver of rigid friction must let it or not know its force.
 
 use glam::{DMat3, DVec3};
 
-/// Sideways force per creep while a contact sticks, N s/m (assumed): 10 kN creep 0.1 mm/s.
-pub(super) const CREEP_N_S_M: f64 = 1.0e8;
+/// Sideways force per creep while a rigid contact sticks, N s/m (assumed): 10 kN creep 0.1 mm/s.
+const CREEP_N_S_M: f64 = 1.0e8;
 
 /// A spring and damper normal to the ground, and its friction.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +18,24 @@ pub(super) struct ContactLaw {
     pub(super) stiffness_n_m: f64,
     pub(super) damping_n_s_m: f64,
     pub(super) friction: f64,
+}
+
+/// Sideways impulse against a velocity of the point, as far as friction carries it:
+/// hold + stick velocity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    /// Impulse on the ground at no velocity, N s.
+    pub(super) hold: DVec3,
+    /// Its growth with the velocity, kg; nothing along the normal.
+    pub(super) stick: DMat3,
+}
+
+impl Grip {
+    /// A rigid contact's.
+    pub(super) fn rigid(normal: DVec3, dt_s: f64) -> Self {
+        let across = DMat3::IDENTITY - outer(normal, normal);
+        Self { hold: DVec3::ZERO, stick: across * (CREEP_N_S_M * dt_s) }
+    }
 }
 
 /// Whose contact it is.
@@ -39,9 +57,10 @@ pub(super) struct Contact {
     push: f64,
     /// Impulse that a normal velocity takes away, kg.
     slope: f64,
-    /// Impulse that sideways velocity makes while it sticks, kg.
-    stick: f64,
+    grip: Grip,
     friction: f64,
+    /// Share of the law that this contact is of.
+    pub(super) weight: f64,
     /// Taken to stick however much force that needs: a first guess.
     pub(super) held: bool,
     /// Velocity of the point at the solver's present guess, m/s.
@@ -60,8 +79,9 @@ impl Contact {
         normal: DVec3::Z,
         push: 0.0,
         slope: 0.0,
-        stick: 0.0,
+        grip: Grip { hold: DVec3::ZERO, stick: DMat3::ZERO },
         friction: 0.0,
+        weight: 1.0,
         held: false,
         velocity: DVec3::ZERO,
         step: DVec3::ZERO,
@@ -72,6 +92,7 @@ impl Contact {
     pub(super) fn new(
         law: &ContactLaw,
         (body, at, normal): (Body, DVec3, DVec3),
+        grip: &Grip,
         depth_m: f64,
         weight: f64,
         dt_s: f64,
@@ -83,66 +104,71 @@ impl Contact {
             normal,
             push: stiffness * depth_m,
             slope: stiffness * dt_s + law.damping_n_s_m * dt_s * weight,
-            stick: CREEP_N_S_M * dt_s * weight,
+            grip: Grip { hold: grip.hold * weight, stick: grip.stick * weight },
             friction: law.friction,
+            weight,
             ..Self::NONE
         }
+    }
+
+    /// Normal impulse at a velocity of the point, N s; none where negative.
+    #[inline]
+    fn normal_impulse(&self, velocity: DVec3) -> f64 {
+        self.push - self.slope * self.normal.dot(velocity)
+    }
+
+    /// Sideways impulse that the grip would make, and the largest that friction carries, N s.
+    #[inline]
+    fn sideways(&self, velocity: DVec3, normal: f64) -> (DVec3, f64) {
+        (self.grip.hold + self.grip.stick * velocity, self.friction * normal)
     }
 
     /// The impulse on the body at a velocity of its point, N s.
     #[inline]
     pub(super) fn impulse(&self, velocity: DVec3) -> DVec3 {
-        let away = self.normal.dot(velocity);
-        let normal = self.push - self.slope * away;
+        let normal = self.normal_impulse(velocity);
         if normal <= 0.0 {
             return DVec3::ZERO;
         }
-        let slip = velocity - self.normal * away;
-        let most = self.friction * normal;
-        let sideways = self.stick * slip.length();
-        let share = if sideways > most && !self.held { most / sideways } else { 1.0 };
-        self.normal * normal - slip * (self.stick * share)
+        let (grip, most) = self.sideways(velocity, normal);
+        let size = grip.length();
+        let share = if size > most && !self.held { most / size } else { 1.0 };
+        self.normal * normal - grip * share
     }
 
     /// Whether it is closed, and sideways within its friction.
     pub(super) fn sticks(&self) -> bool {
-        let away = self.normal.dot(self.velocity);
-        let normal = self.push - self.slope * away;
-        let slip = self.velocity - self.normal * away;
-        normal > 0.0 && self.stick * slip.length() <= self.friction * normal
+        let normal = self.normal_impulse(self.velocity);
+        let (grip, most) = self.sideways(self.velocity, normal);
+        normal > 0.0 && grip.length() <= most
     }
 
     /// Minus the derivative of [`Self::impulse`], kg. With `coupled` false, sliding friction is
-    /// taken as if it did not follow the normal force, which keeps the matrix symmetric.
+    /// taken as if it did not follow the normal force.
     #[inline]
     pub(super) fn slope(&self, velocity: DVec3, coupled: bool) -> DMat3 {
-        let away = self.normal.dot(velocity);
-        let normal = self.push - self.slope * away;
+        let normal = self.normal_impulse(velocity);
         if normal <= 0.0 {
             return DMat3::ZERO;
         }
-        let slip = velocity - self.normal * away;
-        let speed = slip.length();
-        let most = self.friction * normal;
-        let mut across = outer(self.normal, self.normal);
-        let along_normal = across * self.slope;
-        across = DMat3::IDENTITY - across;
-        if self.stick * speed <= most || self.held {
-            return along_normal + across * self.stick;
+        let along_normal = outer(self.normal, self.normal * self.slope);
+        let (grip, most) = self.sideways(velocity, normal);
+        let size = grip.length();
+        if size <= most || self.held {
+            return along_normal + self.grip.stick;
         }
-        let direction = slip / speed;
-        let turning = (across - outer(direction, direction)) * (most / speed);
-        let follows = if coupled {
-            outer(direction, self.normal) * (self.friction * self.slope)
-        } else {
-            DMat3::ZERO
-        };
-        along_normal + turning - follows
+        let direction = grip / size;
+        let along = self.grip.stick.transpose() * direction;
+        let turning = (self.grip.stick - outer(direction, along)) * (most / size);
+        if !coupled {
+            return along_normal + turning;
+        }
+        along_normal + turning - outer(direction, self.normal * (self.friction * self.slope))
     }
 }
 
 #[inline]
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
+pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
@@ -156,7 +182,8 @@ mod tests {
 
     fn contact(depth_m: f64) -> Contact {
         let normal = DVec3::new(0.1, -0.2, 1.0).normalize();
-        Contact::new(&LAW, (Body::Wheel(0), DVec3::ZERO, normal), depth_m, 1.0, DT_S)
+        let place = (Body::Wheel(0), DVec3::ZERO, normal);
+        Contact::new(&LAW, place, &Grip::rigid(normal, DT_S), depth_m, 1.0, DT_S)
     }
 
     #[test]

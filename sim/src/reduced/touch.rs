@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::contact::{Body, Contact, ContactLaw};
+use super::contact::{Body, Contact, ContactLaw, Grip};
 use super::ground::{BAND_M, Touches};
+use super::patch::Patch;
 use super::pose::{Pose, State};
 use super::spatial::{Spatial, angular, velocity_at};
 use super::tree::Tree;
@@ -57,7 +58,8 @@ impl Search {
             let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &state.rate);
             let speed_m_s = velocity_at(&arm, centre).length();
             let ball = Ball { body: Body::Wheel(i), centre, radius_m: tree.radius_m, speed_m_s };
-            self.touches(&ball, state.position, &tree.tyres[i], dt_s, found);
+            let patch = tree.patch(i, pose, state, dt_s);
+            self.touches(&ball, state.position, &tree.laws[i], Some(&patch), dt_s, found);
         }
         for (i, hull) in tree.hulls.iter().enumerate() {
             let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
@@ -92,7 +94,7 @@ impl Search {
             if gap_m <= ahead_m(&HULL, speed_m_s, dt_s) {
                 let ball =
                     Ball { body: Body::Frame(frame), centre, radius_m: part.radius_m, speed_m_s };
-                self.touches(&ball, state.position, &HULL, dt_s, found);
+                self.touches(&ball, state.position, &HULL, None, dt_s, found);
             }
         }
         clear_m
@@ -103,6 +105,7 @@ impl Search {
         ball: &Ball,
         origin: DVec3,
         law: &ContactLaw,
+        patch: Option<&Patch>,
         dt_s: f64,
         found: &mut Vec<Contact>,
     ) {
@@ -114,7 +117,9 @@ impl Search {
             let at = touch.point - origin - touch.normal * (0.5 * depth_m);
             if found.len() < CONTACTS_MAX {
                 let place = (ball.body, at, touch.normal);
-                let mut contact = Contact::new(law, place, depth_m, touch.weight, dt_s);
+                let grip =
+                    patch.map_or_else(|| Grip::rigid(touch.normal, dt_s), |p| p.grip(touch.normal));
+                let mut contact = Contact::new(law, place, &grip, depth_m, touch.weight, dt_s);
                 contact.held = matches!(ball.body, Body::Wheel(i) if self.stuck[i]);
                 found.push(contact);
             }

@@ -4,7 +4,9 @@ use glam::{DMat3, DVec3};
 use xt28_machine::Wheel;
 
 use super::contact::ContactLaw;
-use crate::{HullBall, Part, Parts, RollHinge};
+use super::patch::Patch;
+use super::pose::{Pose, State, WHEELS};
+use crate::{HullBall, Part, Parts, RollHinge, TyrePart};
 
 /// Everything about the bodies that does not move. Frames' coordinates are the machine file's.
 #[derive(Clone, Debug)]
@@ -15,7 +17,9 @@ pub(super) struct Tree {
     /// The spring of the middle frame's roll against the front one, where it can.
     pub(super) roll: Option<RollHinge>,
     pub(super) arms: [Arm; 6],
-    pub(super) tyres: [ContactLaw; 6],
+    /// The tyres' normal forces and friction.
+    pub(super) laws: [ContactLaw; 6],
+    tyres: [TyrePart; 6],
     pub(super) radius_m: f64,
     /// Balls of each frame's outside.
     pub(super) hulls: [Vec<HullBall>; 3],
@@ -66,7 +70,8 @@ impl Tree {
             joints: parts.joint_m.map(DVec3::from),
             roll: parts.roll_hinge,
             arms,
-            tyres: parts.tyres.0.map(|tyre| ContactLaw {
+            tyres: parts.tyres.0,
+            laws: parts.tyres.0.map(|tyre| ContactLaw {
                 stiffness_n_m: tyre.stiffness_n_m,
                 damping_n_s_m: tyre.damping_n_s_m,
                 friction: tyre.friction,
@@ -76,6 +81,12 @@ impl Tree {
             gravity: parts.gravity_m_s2.into(),
             mass_kg: on_frames + on_arms,
         }
+    }
+
+    /// The patch of wheel `i` at the start of a step.
+    pub(super) fn patch(&self, i: usize, pose: &Pose, state: &State, dt_s: f64) -> Patch {
+        let rolling_m_s = state.rate[WHEELS + i] * self.radius_m;
+        Patch::new(&self.tyres[i], state.patch_m[i], pose.arm[i].axle, rolling_m_s, dt_s)
     }
 
     /// The frame that carries arm `i`.

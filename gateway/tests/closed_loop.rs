@@ -137,6 +137,26 @@ fn every_failure_stops_the_machine_then_falls_silent() {
     }
 }
 
+/// An ECU may be back before its silence is noticed: what it says of itself must be enough.
+#[test]
+fn an_ecu_that_restarts_within_its_deadline_ends_the_run_all_the_same() {
+    let mut bench = armed(goto(25.0, 0.0, 0.0));
+    bench.faults.arm_ecu_silent = true;
+    (0..9).for_each(|_| bench.tick());
+    assert_eq!(bench.gateway.status().phase, Phase::Armed, "not late yet");
+    bench.faults = Faults { arm_ecu_starts: true, ..Faults::default() };
+    bench.tick();
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::ArmEcuNotReady));
+    bench.faults = Faults::default();
+    for _ in 0..300 {
+        bench.tick();
+        assert!(bench.drive_target().is_none_or(|target| !target.enable));
+        assert!(bench.arm_target().is_none_or(|target| target.mode == ArmTargetMode::Off));
+    }
+    bench.gateway.order(Order::Arm);
+    bench.run_until(6.0, |status| status.phase == Phase::Armed);
+}
+
 #[test]
 fn an_order_to_disarm_ends_in_silence_and_one_to_arm_starts_again() {
     let mut bench = armed(Box::new(Hold));

@@ -24,6 +24,8 @@ pub(crate) const TICK_MS: u64 = 10;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Faults {
     pub(crate) arm_ecu_silent: bool,
+    /// It has started anew and looks at its inputs.
+    pub(crate) arm_ecu_starts: bool,
     pub(crate) drive_ecu_deaf: bool,
     pub(crate) drive_ecu_safe_stop: bool,
     pub(crate) gnss_silent: bool,
@@ -178,9 +180,10 @@ impl Bench {
 
     fn add_status(&mut self, frames: &mut Vec<Frame>) {
         if !self.faults.arm_ecu_silent {
+            let starts = self.faults.arm_ecu_starts;
             let status = ArmStatus {
                 mode: ArmStatusMode::Off,
-                state: ArmStatusState::Standby,
+                state: if starts { ArmStatusState::Init } else { ArmStatusState::Standby },
                 faults: 0,
                 accepted: self.accepted[0],
                 reason: ArmStatusReason::None,

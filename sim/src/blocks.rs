@@ -7,6 +7,7 @@ mod drive;
 mod flow_sharing;
 mod lock;
 mod steering;
+mod tyre;
 mod valve;
 
 pub use accumulator::Accumulator;
@@ -16,4 +17,5 @@ pub use drive::{Drive, DriveInput, DriveOutput, DriveState};
 pub use flow_sharing::FlowSharing;
 pub use lock::Lock;
 pub use steering::{Steering, SteeringInput, SteeringState};
+pub use tyre::{PATCHES_MAX, PatchInput, PatchState, Patches, Tyre};
 pub use valve::{Valve, ValveState};

@@ -21,8 +21,8 @@ mod vehicle;
 pub use actuation::Actuation;
 pub use blocks::{
     Accumulator, Arm, ArmInput, ArmState, Cylinder, CylinderForce, CylinderMotion, CylinderState,
-    Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, Steering, SteeringInput,
-    SteeringState, Valve, ValveState,
+    Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, PATCHES_MAX, PatchInput,
+    PatchState, Patches, Steering, SteeringInput, SteeringState, Tyre, Valve, ValveState,
 };
 pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 pub use effects::Effects;

@@ -5,5 +5,6 @@ mod ground_contact;
 mod hull_watch;
 mod insert;
 mod shapes;
+mod tyre_contact;
 
 pub use bodies::RapierBodies;

@@ -54,7 +54,7 @@ const TURN: Bounds = [
     ("yaw", 0.007),
     ("roll", 7e-4),
     ("pitch", 1.2e-4),
-    ("joint", 2.5e-3),
+    ("joint", 4e-3),
     ("stroke", 6e-4),
     ("wheel_speed", 0.15),
     ("ground_force", 210.0),

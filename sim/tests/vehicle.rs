@@ -94,8 +94,8 @@ fn a_turning_machine_stays_calm() {
     assert!(shake < 0.5, "sideways force jumps by {shake} m/s2 between steps");
     let s = vehicle.state();
     // The lock gives way to the scrub of the tyres by some tenths of a degree.
-    assert!((s.joint_rad[0].to_degrees() - 15.0).abs() < 0.5, "{:?}", s.joint_rad);
-    assert!((s.joint_rad[1].to_degrees() - 8.4).abs() < 0.5, "{:?}", s.joint_rad);
+    assert!((s.joint_rad[0].to_degrees() - 15.0).abs() < 0.7, "{:?}", s.joint_rad);
+    assert!((s.joint_rad[1].to_degrees() - 8.4).abs() < 0.7, "{:?}", s.joint_rad);
     assert!(s.yaw_rad > 0.3, "it turns left: {}", s.yaw_rad);
 }
 
@@ -181,8 +181,7 @@ fn blocks_alone_reproduce_the_whole() {
     }
 }
 
-/// The engine takes a contact's spring as a frequency of a mass it works out itself, so the tyre's
-/// stiffness is what a stander's sag says it is.
+/// A stander's sag says what a tyre's stiffness is.
 #[test]
 fn the_tyres_sag_by_their_stiffness() {
     let machine = Machine::xt28();
@@ -197,7 +196,7 @@ fn the_tyres_sag_by_their_stiffness() {
         let drop_m = linkage.at_stroke(s.stroke_m[wheel]).drop_m - linkage.at_stroke(0.25).drop_m;
         let sag_m = drop_m - s.position_m[2] - x_m * s.pitch_rad;
         let wanted_m = s.ground_force_n[wheel] / machine.vehicle.tyre_stiffness_n_m;
-        assert!((sag_m / wanted_m - 1.0).abs() < 0.25, "{wheel}: {sag_m} m, not {wanted_m} m");
+        assert!((sag_m / wanted_m - 1.0).abs() < 0.1, "{wheel}: {sag_m} m, not {wanted_m} m");
     }
 }
 

@@ -9,6 +9,7 @@ use xt28_machine::{PerWheel, Wheel};
 use super::hull_watch::HullWatch;
 use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
 use super::shapes::Ground;
+use super::tyre_contact::{Rim, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
 use crate::{Parts, Terrain};
 
@@ -21,11 +22,11 @@ pub struct RapierBodies {
     frames: [RigidBodyHandle; 3],
     arms: PerWheel<RigidBodyHandle>,
     wheels: PerWheel<RigidBodyHandle>,
-    wheel_colliders: PerWheel<ColliderHandle>,
     hulls: [HullWatch; 3],
     terrain: Terrain,
     /// The front frame's centre of mass, which is its body's origin, among the machine's axes.
     front_com: Vector,
+    tyres: PerWheel<TyreContact>,
     ground: ColliderHandle,
     joints: [Hinge; 2],
     arm_hinges: PerWheel<Hinge>,
@@ -59,10 +60,8 @@ impl Bodies for RapierBodies {
         let frames = insert_frames(parts, &mut world);
         let mut arms = PerWheel::splat(RigidBodyHandle::invalid());
         let mut wheels = arms;
-        let mut wheel_colliders = PerWheel::splat(ColliderHandle::invalid());
         for wheel in Wheel::ALL {
-            (arms[wheel], wheels[wheel], wheel_colliders[wheel]) =
-                insert_arm(parts, &mut world, &frames, wheel);
+            (arms[wheel], wheels[wheel]) = insert_arm(parts, &mut world, &frames, wheel);
         }
         let hulls = core::array::from_fn(|i| HullWatch::new(&mut world, frames[i], parts, i));
         let mut bodies = Self {
@@ -70,10 +69,10 @@ impl Bodies for RapierBodies {
             frames,
             arms,
             wheels,
-            wheel_colliders,
             hulls,
             terrain: terrain.clone(),
             front_com: vector(origin_m(parts, 0)),
+            tyres: PerWheel::from_fn(|wheel| TyreContact::new(parts, wheel)),
             ground,
             joints: Default::default(),
             arm_hinges: PerWheel::splat(Hinge::default()),
@@ -90,6 +89,7 @@ impl Bodies for RapierBodies {
 
     fn motion(&self) -> Motion {
         let body = &self.world.bodies[self.frames[0]];
+        let [velocity, rate] = self.velocities(0);
         let wide = |v: Vector| v.to_array().map(f64::from);
         Motion {
             arm: PerWheel::from_fn(|w| {
@@ -101,8 +101,8 @@ impl Bodies for RapierBodies {
             wheel_rate_rad_s: self.wheel_hinges.map(|hinge| self.hinge_motion(hinge).rate_rad_s),
             position_m: wide(*body.position() * -self.front_com),
             axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
-            velocity_m_s: wide(body.linvel()),
-            rate_rad_s: wide(body.angvel()),
+            velocity_m_s: wide(velocity),
+            rate_rad_s: wide(rate),
             ground_force_n: self.ground_force_n,
             chassis_force_n: self.chassis_force_n,
         }
@@ -115,10 +115,9 @@ impl Bodies for RapierBodies {
         for hull in &mut self.hulls {
             hull.look(&mut self.world, &self.terrain, dt_s);
         }
+        self.push_tyres(dt_s);
         self.world.integration_parameters.dt = dt_s as Real;
         self.world.step();
-        let up = |force_n: [f64; 3]| force_n[2];
-        self.ground_force_n = self.wheel_colliders.map(|wheel| up(self.ground_push_n(wheel, dt_s)));
         let push_n = |hull: &HullWatch| {
             let push_n = self.ground_push_n(hull.collider(), dt_s);
             push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
@@ -142,7 +141,13 @@ impl Clone for RapierBodies {
             multibody_joints: self.world.multibody_joints.clone(),
             ..PhysicsWorld::new()
         };
-        Self { world, hulls: self.hulls.clone(), terrain: self.terrain.clone(), ..*self }
+        Self {
+            world,
+            hulls: self.hulls.clone(),
+            tyres: self.tyres.clone(),
+            terrain: self.terrain.clone(),
+            ..*self
+        }
     }
 }
 
@@ -164,7 +169,7 @@ impl RapierBodies {
 
     fn set_wheel_torques(&mut self, loads: &Loads) {
         for wheel in Wheel::ALL {
-            let axle = self.world.bodies[self.arms[wheel]].rotation() * Vector::Y;
+            let axle = self.axle(wheel);
             #[allow(clippy::cast_possible_truncation)]
             let (drive, drag) = (loads.drive_nm[wheel] as Real, loads.drag_nm[wheel] as Real);
             let arm = &mut self.world.bodies[self.arms[wheel]];
@@ -173,6 +178,28 @@ impl RapierBodies {
             let body = &mut self.world.bodies[self.wheels[wheel]];
             body.reset_torques(false);
             body.add_torque(axle * (drive + drag), false);
+        }
+    }
+
+    /// The axle of a wheel, to the left.
+    fn axle(&self, wheel: Wheel) -> Vector {
+        self.world.bodies[self.arms[wheel]].rotation() * Vector::Y
+    }
+
+    /// Hands the tyres' forces to their wheels.
+    fn push_tyres(&mut self, dt_s: f64) {
+        for wheel in Wheel::ALL {
+            let rim = Rim {
+                centre: self.world.bodies[self.wheels[wheel]].translation(),
+                axle: self.axle(wheel),
+                velocities: self.velocities(self.wheel_hinges[wheel].link),
+            };
+            let [force, torque] = self.tyres[wheel].push(&rim, &self.terrain, dt_s);
+            let body = &mut self.world.bodies[self.wheels[wheel]];
+            body.reset_forces(false);
+            body.add_force(force, false);
+            body.add_torque(torque, false);
+            self.ground_force_n[wheel] = f64::from(force.z);
         }
     }
 
@@ -200,6 +227,16 @@ impl RapierBodies {
             angle_rad: f64::from(angle),
             rate_rad_s: f64::from(multibody.generalized_velocity()[hinge.dof]),
         }
+    }
+
+    /// Velocity of a link's centre of mass and its angular velocity, in the world.
+    ///
+    /// The engine brings its bodies' own velocities up to date only when the next step begins.
+    fn velocities(&self, link: usize) -> [Vector; 2] {
+        let multibody = self.multibody();
+        let twist = multibody.body_jacobian(link) * multibody.generalized_velocity();
+        let at = |i: usize| Vector::new(twist[i], twist[i + 1], twist[i + 2]);
+        [at(0), at(3)]
     }
 
     fn multibody(&self) -> &Multibody {

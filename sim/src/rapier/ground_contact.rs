@@ -1,4 +1,4 @@
-//! What meets the ground, for the engine: a dispatcher that knows wheel and hull against [`Ground`].
+//! Frames against the ground, for the engine: a dispatcher that knows [`Hull`] against [`Ground`].
 
 use rapier3d::geometry::{ContactData, ContactManifoldData};
 use rapier3d::math::{Pose, Real, Vector};
@@ -14,7 +14,7 @@ use xt28_terrain::Nearest;
 
 use super::shapes::{Ground, Hull};
 
-/// Balls and hulls against [`Ground`] by local minima; every other pair by the engine's own dispatcher.
+/// Hulls against [`Ground`] by local minima; every other pair by the engine's own dispatcher.
 pub(crate) struct GroundDispatcher;
 
 type Manifold = ContactManifold<ContactManifoldData, ContactData>;
@@ -43,15 +43,6 @@ impl PersistentQueryDispatcher<ContactManifoldData, ContactData> for GroundDispa
         let met = ground_and_other(g1, g2);
         if let Some((ground, other, flipped)) = met {
             let pose = if flipped { pos12.inverse() } else { *pos12 };
-            if let Some(ball) = other.as_ball() {
-                let ball = BallOf { pose, centre: Vector::ZERO, radius: ball.radius, flipped };
-                let minima = ball.minima(ground, prediction);
-                manifolds.resize_with(minima.points().len(), Manifold::new);
-                for (manifold, nearest) in manifolds.iter_mut().zip(minima.points()) {
-                    ball.write_contact(manifold, nearest);
-                }
-                return Ok(());
-            }
             if let Some(hull) = other.as_shape::<Hull>() {
                 hull_contacts(ground, hull, &pose, flipped, prediction, manifolds);
                 return Ok(());

@@ -5,16 +5,13 @@ use xt28_machine::Wheel;
 
 use super::ground_contact::GroundDispatcher;
 use super::shapes::Hull;
-use crate::parts::{ArmPart, HullBall, Part, Parts, TyrePart};
+use crate::parts::{ArmPart, HullBall, Part, Parts};
 
-/// What a wheel's contact moves, kg: the wheel, its share of the arm, and what the cylinder's lock
-/// resists within a step. The engine states a contact's spring as a frequency of this mass; a test
-/// holds the sag that comes of it to the tyre's stiffness.
-const CONTACT_MASS_KG: f64 = 770.0;
-
+/// How a frame's contact with the ground springs, Hz, and its share of critical damping (assumed).
+const HULL_SPRING: (Real, Real) = (16.0, 0.4);
 /// Coefficient of friction of steel on ground (assumed).
 const HULL_FRICTION: Real = 0.5;
-/// Wheels and hulls meet the ground only, never one another.
+/// Hulls meet the ground only, never one another.
 const ON_GROUND: InteractionGroups =
     InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);
 
@@ -36,17 +33,9 @@ pub(super) fn new_world(parts: &Parts) -> PhysicsWorld {
     p.max_ccd_substeps = 0;
     p.contact_recycling = false;
     p.contact_clustering = false;
-    p.static_contact_softness = tyre(&parts.tyres[Wheel::Fr]);
+    p.static_contact_softness = SpringCoefficients::new(HULL_SPRING.0, HULL_SPRING.1);
     p.normalized_allowed_linear_error = 0.0;
     world
-}
-
-/// The tyres' spring and damper, as the engine wants a contact's.
-#[allow(clippy::cast_possible_truncation)]
-fn tyre(t: &TyrePart) -> SpringCoefficients<Real> {
-    let rad_s = (t.stiffness_n_m / CONTACT_MASS_KG).sqrt();
-    let damping_ratio = t.damping_n_s_m / (2.0 * CONTACT_MASS_KG * rad_s);
-    SpringCoefficients::new((rad_s / core::f64::consts::TAU) as Real, damping_ratio as Real)
 }
 
 /// Where a frame's body has its origin among the machine's axes.
@@ -101,7 +90,7 @@ pub(super) fn insert_arm(
     world: &mut PhysicsWorld,
     frames: &[RigidBodyHandle; 3],
     wheel: Wheel,
-) -> (RigidBodyHandle, RigidBodyHandle, ColliderHandle) {
+) -> (RigidBodyHandle, RigidBodyHandle) {
     let ArmPart { body: arm, pivot_m, to_wheel_m, .. } = &parts.arms[wheel];
     // Arms and wheels have their origin in their own hinge.
     let axle = |on_parent: Vector| RevoluteJointBuilder::new(Vector::Y).local_anchor1(on_parent);
@@ -110,14 +99,7 @@ pub(super) fn insert_arm(
     world.insert_multibody_joint(frames[frame], arm, axle(on_frame(parts, frame, *pivot_m)));
     let rim = world.bodies.insert(body(&parts.wheel));
     world.insert_multibody_joint(arm, rim, axle(vector(*to_wheel_m)));
-    #[allow(clippy::cast_possible_truncation)]
-    let ball = ColliderBuilder::ball(parts.radius_m as Real)
-        .density(0.0)
-        .friction(parts.tyres[wheel].friction as Real)
-        .friction_combine_rule(CoefficientCombineRule::Min)
-        .collision_groups(ON_GROUND);
-    let collider = world.insert_collider(ball, Some(rim));
-    (arm, rim, collider)
+    (arm, rim)
 }
 
 #[allow(clippy::cast_possible_truncation)]

@@ -11,7 +11,7 @@ use rapier3d::parry::shape::{FeatureId, Shape, ShapeType, TypedShape};
 use crate::Terrain;
 use crate::parts::HullBall;
 
-/// The ground as a shape; only balls and hulls meet it.
+/// The ground as a shape; only hulls meet it.
 #[derive(Clone, Debug)]
 pub(super) struct Ground(pub(super) Terrain);
 

@@ -89,6 +89,6 @@ fn a_ramp_is_in_bounds_but_for_one_wheel() {
     let known = ["wheel_speed.BR"];
     assert!(out(&report).iter().all(|signal| known.contains(signal)), "{:?}", out(&report));
     for row in report.rows.iter().filter(|row| known.contains(&row.signal.as_str())) {
-        assert!(row.errors.rmse < 0.032, "{}: {}", row.signal, row.errors.rmse);
+        assert!(row.errors.rmse < 0.035, "{}: {}", row.signal, row.errors.rmse);
     }
 }

@@ -1,0 +1,190 @@
+//! Tyres under the whole vehicle: nominal, softened, slippery, brush.
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, TyreModel, Wheel};
+use xt28_sim::effects::{Overlay, SoftTyre};
+use xt28_sim::{Actuation, Effects, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
+
+fn overlay(text: &str) -> Effects {
+    Overlay::parse(text, std::path::Path::new("o.toml")).unwrap().effects()
+}
+
+fn vehicle(machine: &Machine, effects: &Effects, terrain: &Terrain) -> Vehicle {
+    Vehicle::with(machine, effects, terrain, PerWheel::splat(0.17), STEP)
+}
+
+/// 3 s of standing, then a throttle step to a third of full speed; every state.
+fn drive(
+    machine: &Machine,
+    effects: &Effects,
+    terrain: &Terrain,
+    seconds: f64,
+) -> Vec<VehicleState> {
+    let mut vehicle = vehicle(machine, effects, terrain);
+    let steps = (seconds / STEP.as_secs_f64()) as u32;
+    let states = (0..steps).map(|step| {
+        let t = f64::from(step) * STEP.as_secs_f64();
+        let pump = ((t - 3.0) / 0.5).clamp(0.0, 1.0);
+        vehicle.step(&Actuation { pump_displacement: [pump; 2], ..Actuation::idle(1200.0) });
+        *vehicle.state()
+    });
+    states.collect()
+}
+
+fn soft(stiffness_n_m: f64, damping_n_s_m: f64) -> Effects {
+    let mut effects = Effects::default();
+    for wheel in Wheel::ALL {
+        effects.wheels[wheel].soft_tyre = SoftTyre { stiffness_n_m, damping_n_s_m };
+    }
+    effects
+}
+
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    values.for_each(|v| (sum, count) = (sum + v * v, count + 1.0));
+    f64::sqrt(sum / count)
+}
+
+#[test]
+fn soft_tyres_sag_by_load_over_stiffness_and_carry_the_weight() {
+    let machine = Machine::xt28();
+    let mut vehicle = vehicle(&machine, &soft(4e5, 1e4), &Terrain::Flat);
+    // On so little damping the machine bounces for a while.
+    (0..2000).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
+    let s = *vehicle.state();
+    let weight_n = machine.mass_kg() * GRAVITY_M_S2;
+    assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 1e-3, "{}", s.ground_force_n.sum());
+    let linkage = machine.linkage();
+    for wheel in Wheel::ALL {
+        let x_m = machine.wheels.axle_x_m[wheel.axle() as usize];
+        let drop_m = linkage.at_stroke(s.stroke_m[wheel]).drop_m - linkage.at_stroke(0.25).drop_m;
+        let sag_m = drop_m - s.position_m[2] - x_m * s.pitch_rad.sin();
+        let wanted_m = s.ground_force_n[wheel] / 4e5;
+        assert!((sag_m - wanted_m).abs() < 2e-3, "{wheel}: {sag_m} m, not {wanted_m} m");
+    }
+}
+
+/// On the front the machine is heavier, so soft tyres let its nose down; a bounce rings.
+#[test]
+fn soft_tyres_show_in_pitch_and_only_where_they_are() {
+    let machine = Machine::xt28();
+    let nominal = *drive(&machine, &Effects::default(), &Terrain::Flat, 3.0).last().unwrap();
+    let all = *drive(&machine, &soft(4e5, 1e4), &Terrain::Flat, 3.0).last().unwrap();
+    let nose_deg = (all.pitch_rad - nominal.pitch_rad).to_degrees();
+    assert!((-1.5..-0.3).contains(&nose_deg), "{nose_deg}");
+    assert!((all.roll_rad - nominal.roll_rad).abs() < 1e-4);
+    let right = overlay(
+        "[[effect]]\nname = \"soft-tyres\"\nscope = \"right\"\nstiffness_n_m = 4e5\ndamping_n_s_m = 1e4",
+    );
+    let right = *drive(&machine, &right, &Terrain::Flat, 3.0).last().unwrap();
+    assert!(right.roll_rad.to_degrees() < -1.0, "the right side sinks: {}", right.roll_rad);
+}
+
+/// From the neutral stiffness down nothing jumps: the first step away from it, where the block takes
+/// over from the engine's contact, changes less than halving the stiffness does.
+#[test]
+fn softening_sets_in_without_a_jump() {
+    let machine = Machine::xt28();
+    let ramp = Ramp { x_m: [1.0, 3.0, 4.0, 6.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
+    let terrain = Terrain::ramp(&ramp);
+    let run = |k: f64| {
+        let effects = if k == 8e6 { Effects::default() } else { soft(k, 6e4) };
+        drive(&machine, &effects, &terrain, 14.0)
+    };
+    let (neutral, beside, half) = (run(8e6), run(7.999e6), run(4e6));
+    let apart = |a: &[VehicleState], b: &[VehicleState], f: fn(&VehicleState) -> f64| {
+        rms(a.iter().zip(b).skip(600).map(|(a, b)| f(a) - f(b)))
+    };
+    type Signal = (&'static str, fn(&VehicleState) -> f64, f64);
+    let signals: [Signal; 4] = [
+        ("pitch, rad", |s| s.pitch_rad, 3e-4),
+        ("roll, rad", |s| s.roll_rad, 8e-4),
+        ("stroke, m", |s| s.stroke_m[Wheel::Mr], 5e-4),
+        ("travel, m", |s| s.position_m[0], 0.01),
+    ];
+    for (name, f, bound) in signals {
+        let (jump, step) = (apart(&neutral, &beside, f), apart(&neutral, &half, f));
+        assert!(jump < bound, "{name}: {jump} at the seam, {step} for half the stiffness");
+    }
+}
+
+#[test]
+fn any_stiffness_drives_calmly() {
+    let machine = Machine::xt28();
+    for (k, c) in [(2e5, 5e3), (4e5, 1e4), (1e6, 2e4), (4e6, 5e4), (2e7, 1e5)] {
+        let states = drive(&machine, &soft(k, c), &Terrain::Flat, 9.0);
+        let end = states.last().unwrap();
+        let travel_m = end.position_m[0] - states[0].position_m[0];
+        assert!((2.0..4.0).contains(&travel_m), "{k}: {travel_m}");
+        let late = &states[states.len() - 400..];
+        let shake = rms(late
+            .windows(2)
+            .map(|w| w[1].front_specific_force_m_s2[2] - w[0].front_specific_force_m_s2[2]));
+        assert!(shake < 0.1, "{k}: {shake} m/s2 from step to step");
+    }
+}
+
+#[test]
+fn slip_lets_wheels_turn_faster_than_the_machine_travels() {
+    let machine = Machine::xt28();
+    let slippery = overlay("[[effect]]\nname = \"slippery-ground\"\nslip = 0.1");
+    for effects in [Effects::default(), slippery.clone()] {
+        let states = drive(&machine, &effects, &Terrain::Flat, 9.0);
+        let (a, b) = (&states[1200], states.last().unwrap());
+        let rolled_m: f64 = states[1200..].iter().map(|s| s.wheel_speed_rad_s.mean()).sum::<f64>()
+            * machine.wheels.radius_m
+            * STEP.as_secs_f64();
+        let slip = 1.0 - (b.position_m[0] - a.position_m[0]) / rolled_m;
+        let wanted = effects.wheels[Wheel::Fr].slippery_ground.slip;
+        assert!((slip - wanted).abs() < 0.01, "{slip}, not {wanted}");
+    }
+    // Standing, nothing slips: strokes and attitude are the nominal machine's.
+    let stand = |effects: &Effects| *drive(&machine, effects, &Terrain::Flat, 2.9).last().unwrap();
+    let (nominal, other) = (stand(&Effects::default()), stand(&slippery));
+    assert!((nominal.pitch_rad - other.pitch_rad).abs() < 1e-5);
+    assert!(nominal.stroke_m.0.iter().zip(other.stroke_m.0).all(|(a, b)| (a - b).abs() < 1e-5));
+}
+
+/// Ice carries the machine as the road does, but does not start it as fast.
+#[test]
+fn low_friction_spins_the_wheels_at_a_throttle_step() {
+    let machine = Machine::xt28();
+    let ice = overlay("[[effect]]\nname = \"slippery-ground\"\nfriction_factor = 0.05");
+    let at = |effects: &Effects| {
+        let states = drive(&machine, effects, &Terrain::Flat, 4.5);
+        let spin = |s: &VehicleState| {
+            s.wheel_speed_rad_s.mean() * machine.wheels.radius_m - s.antenna_velocity_m_s[0]
+        };
+        states[600..].iter().map(spin).fold(0.0_f64, f64::max)
+    };
+    let (road, ice) = (at(&Effects::default()), at(&ice));
+    assert!(ice > road + 0.1, "wheels spin by {ice} m/s on ice, {road} m/s on the road");
+}
+
+#[test]
+fn a_machine_on_brush_tyres_drives_and_turns() {
+    let mut machine = Machine::xt28();
+    machine.vehicle.tyre_model = TyreModel::Brush;
+    machine.vehicle.tyre_stiffness_n_m = 6e5;
+    machine.vehicle.tyre_damping_n_s_m = 1.5e4;
+    let mut vehicle = vehicle(&machine, &Effects::default(), &Terrain::Flat);
+    let mut last: Option<VehicleState> = None;
+    let mut shake = 0.0_f64;
+    for step in 0..3000 {
+        let t = f64::from(step) * STEP.as_secs_f64();
+        vehicle.step(&Actuation {
+            pump_displacement: [((t - 2.0) / 2.0).clamp(0.0, 1.0); 2],
+            steer_opening: if (4.0..9.0).contains(&t) { [0.3, 0.168] } else { [0.0; 2] },
+            ..Actuation::idle(1200.0)
+        });
+        let s = *vehicle.state();
+        if let Some(last) = last {
+            let jump = s.front_specific_force_m_s2[1] - last.front_specific_force_m_s2[1];
+            shake = shake.max(jump.abs());
+        }
+        last = Some(s);
+    }
+    let s = vehicle.state();
+    assert!(shake < 0.5, "{shake} m/s2 from step to step");
+    assert!((s.joint_rad[0].to_degrees() - 15.0).abs() < 0.7, "{:?}", s.joint_rad);
+    assert!(s.yaw_rad > 0.3, "{}", s.yaw_rad);
+}

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use ecu_emu::{Profile, SensorFault};
+use ecu_emu::{Profile, Quirks, SensorFault};
 
 /// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
 ///
@@ -40,6 +40,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) operator: Option<PathBuf>,
 
+    /// Switch an oddity of the firmware on or off (docs/firmware-2016.md); profile 2016 only
+    #[arg(long = "quirk", value_name = "NAME=on|off", value_parser = quirk)]
+    pub(crate) quirks: Vec<(String, bool)>,
+
     /// Seed of the sensor noise; exact sensors without it
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
@@ -68,6 +72,17 @@ pub(crate) struct Args {
     /// Write what is true of the machine, tick by tick (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
+}
+
+fn quirk(text: &str) -> Result<(String, bool), String> {
+    let (name, on) = match text.split_once('=') {
+        Some((name, "on")) => (name, true),
+        Some((name, "off")) => (name, false),
+        _ => return Err("give NAME=on or NAME=off".to_owned()),
+    };
+    // Only to refuse a name that there is not.
+    Quirks::none().set(name, on).map_err(|error| error.to_string())?;
+    Ok((name.to_owned(), on))
 }
 
 fn stroke_mm(text: &str) -> Result<f64, String> {

@@ -92,12 +92,15 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
                     leave out [[event]] with --profile 2016"
             .into());
     }
+    if args.profile == Profile::Paper && (args.operator.is_some() || !args.quirks.is_empty()) {
+        return Err("--operator and --quirk are for the firmware of 2016; \
+                    give --profile 2016 too"
+            .into());
+    }
+    for (name, on) in &args.quirks {
+        config.quirks.set(name, *on)?;
+    }
     if let Some(path) = &args.operator {
-        if args.profile == Profile::Paper {
-            return Err("--operator: nobody sits in the cab of the paper's profile; \
-                        give --profile 2016 too"
-                .into());
-        }
         config.operator = Operator::load(path)?;
     }
     Ok(config)

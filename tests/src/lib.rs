@@ -29,6 +29,7 @@ pub use builtin::BUILTIN;
 pub use cab_script::CabScript;
 pub use decode::Decoder;
 pub use digest::sha256;
+pub use ecu_emu::Quirks;
 pub use error::{ScenarioError, SetupError};
 pub use event::{Event, GatewayOrder, Incident, Node};
 pub use expect::{Evidence, Expectation};

@@ -76,6 +76,7 @@ impl<W: Write> Lockstep<W> {
             effects: overlay.effects(),
             mishaps: scenario.mishaps(),
             profile: scenario.profile,
+            quirks: scenario.quirks,
             operator: scenario.cab.as_ref().map_or_else(Operator::idle, |cab| cab.operator.clone()),
             ..EmulatorConfig::new(machine.clone(), terrain.clone(), Some(*seed))
         };

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ecu_emu::{Mishaps, Profile, SensorFault};
+use ecu_emu::{Mishaps, Profile, Quirks, SensorFault};
 use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
@@ -39,6 +39,9 @@ pub struct Scenario {
     /// Whose control runs in the ECUs: `paper`, or the firmware of `2016`, which an operator drives.
     #[serde(default, deserialize_with = "cab_script::profile")]
     pub profile: Profile,
+    /// Oddities of that firmware that shall be otherwise than it has them.
+    #[serde(default, deserialize_with = "cab_script::quirks")]
+    pub quirks: Quirks,
     /// What the operator does: a script beside the scenario file. Profile 2016 only.
     pub operator: Option<PathBuf>,
     /// The script that `operator` names; not a key.
@@ -267,11 +270,15 @@ stands-still = { below_m_s = 0.02 }
             )
         };
         let scenario = parse("2016", ACTION).unwrap();
-        assert_eq!(scenario.profile, Profile::Firmware2016);
+        assert_eq!(
+            (scenario.profile, scenario.quirks),
+            (Profile::Firmware2016, Quirks::firmware())
+        );
         assert_eq!(scenario.cab.unwrap().text, ACTION);
         let refusals = [
             (parse("paper", ACTION), "a/ramp.toml:7: operator needs profile = \"2016\""),
             (parse("2016", "[[action]]\n"), "a/ramp.toml:7: a/cab.toml:1: missing field `at_s`"),
+            (parse("2016\"\nquirks = { x = true }\n#", ACTION), "a/ramp.toml:7: no oddity \"x\""),
             (parse("2015", ACTION), "a/ramp.toml:6: no profile \"2015\"; give paper or 2016"),
         ];
         for (refused, starts) in refusals {

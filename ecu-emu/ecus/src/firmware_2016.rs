@@ -19,4 +19,4 @@ pub use arm::ArmEcu2016;
 pub use cab::CabPins;
 pub use drive::DriveEcu2016;
 pub use flow::flow_to_current_ma;
-pub use quirks::Quirks;
+pub use quirks::{Quirks, UnknownQuirk};

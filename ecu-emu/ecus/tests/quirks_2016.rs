@@ -67,7 +67,7 @@ fn every_switch_changes_what_it_says_and_by_how_much() {
             shown.unwrap_or_else(|| panic!("{name}: nothing here shows it"));
         for (state, wanted) in [(true, on), (false, off)] {
             let mut quirks = Quirks::firmware();
-            *quirks.by_name(name).unwrap() = state;
+            quirks.set(name, state).unwrap();
             let got = measure(quirks);
             assert!((got - wanted).abs() <= *within, "{name} = {state}: {got}, not {wanted}");
         }

@@ -16,7 +16,7 @@ use program::{Output, Program};
 use rustix::process::Signal;
 use xt28_bus::SocketCan;
 use xt28_machine::SimTime;
-use xt28_scenarios::{Cost, GatewayOrder, Incident, Node, Recording, Setup, Truth, sha256};
+use xt28_scenarios::{Cost, GatewayOrder, Incident, Node, Quirks, Recording, Setup, Truth, sha256};
 use xt28_sim::TerrainSpec;
 
 use crate::Failure;
@@ -126,6 +126,10 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
         add("--machine", machine.display().to_string());
     }
     add("--profile", setup.scenario.profile.to_string());
+    let (as_is, wanted) = (Quirks::firmware().list(), setup.scenario.quirks.list());
+    for ((name, on), _) in wanted.into_iter().zip(as_is).filter(|(wanted, as_is)| wanted != as_is) {
+        add("--quirk", format!("{name}={}", if on { "on" } else { "off" }));
+    }
     if let Some(cab) = &setup.scenario.cab {
         let file = folder.join("operator.toml");
         fs::write(&file, &cab.text)?;

@@ -62,6 +62,12 @@ const CHECKS: &[Check] = &[
         virtual_time: false,
         repeats: None,
     },
+    Check {
+        scenario: "2016-cross-slope",
+        log: "2016-cross-slope.log",
+        virtual_time: true,
+        repeats: None,
+    },
 ];
 
 /// A test program that uses a real bus where `XT28_VCAN` names one.

@@ -1,5 +1,7 @@
 //! The firmware's oddities, each a switch: on as the firmware is, off as its authors will have meant.
 
+use core::fmt;
+
 macro_rules! quirks {
     ($($(#[doc = $doc:literal])+ $name:ident: $firmware:literal,)+) => {
         /// What to reproduce of the firmware's oddities.
@@ -29,12 +31,16 @@ macro_rules! quirks {
                 vec![$((stringify!($name), self.$name),)+]
             }
 
-            /// The switch of that name, to set; `None` if there is none.
-            pub fn by_name(&mut self, name: &str) -> Option<&mut bool> {
+            /// Sets the switch of that name.
+            ///
+            /// # Errors
+            /// [`UnknownQuirk`] if there is none.
+            pub fn set(&mut self, name: &str, on: bool) -> Result<(), UnknownQuirk> {
                 match name {
-                    $(stringify!($name) => Some(&mut self.$name),)+
-                    _ => None,
+                    $(stringify!($name) => self.$name = on,)+
+                    _ => return Err(UnknownQuirk(name.to_owned())),
                 }
+                Ok(())
             }
         }
     };
@@ -119,6 +125,18 @@ quirks! {
     debug_frames_sent_twice: true,
 }
 
+/// A name that is no switch's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownQuirk(String);
+
+impl fmt::Display for UnknownQuirk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "no oddity {:?}; docs/firmware-2016.md lists them", self.0)
+    }
+}
+
+impl core::error::Error for UnknownQuirk {}
+
 impl Default for Quirks {
     fn default() -> Self {
         Self::firmware()
@@ -133,10 +151,11 @@ mod tests {
     fn a_switch_is_found_by_its_name_and_the_lists_agree() {
         let mut quirks = Quirks::none();
         for (name, _) in Quirks::firmware().list() {
-            *quirks.by_name(name).expect("its own name") = true;
+            quirks.set(name, true).expect("its own name");
         }
         assert!(quirks.list().iter().all(|(_, on)| *on));
-        assert_eq!(quirks.by_name("no_such"), None);
+        let error = quirks.set("no_such", true).unwrap_err().to_string();
+        assert_eq!(error, "no oddity \"no_such\"; docs/firmware-2016.md lists them");
         assert!(Quirks::none().list().iter().all(|(_, on)| !on));
         let off: Vec<_> = Quirks::firmware().list().into_iter().filter(|(_, on)| !on).collect();
         assert_eq!(off, [("negative_readings_wrap", false)]);

@@ -4,6 +4,7 @@ use std::alloc::System;
 use std::time::Duration;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use xt28_dbc::Frame;
 use xt28_dbc::messages::{ArmTarget, ArmTargetMode, ArmValve, DriveTarget};
 use xt28_ecus::{ArmEcu, ArmOutputs, ArmPins, DriveEcu, DriveOutputs, DrivePins, Port, pins};
 use xt28_machine::{Machine, PerWheel, SimTime};
@@ -54,17 +55,7 @@ fn drives_without_allocating(mode: ArmTargetMode) {
             };
             arm.on_frame(now, Port::Can1, &target.encode().unwrap());
             if mode == ArmTargetMode::ManualValve {
-                let percent = 10.0;
-                let valve = ArmValve {
-                    fr_percent: percent,
-                    fl_percent: percent,
-                    mr_percent: percent,
-                    ml_percent: percent,
-                    br_percent: percent,
-                    bl_percent: percent,
-                    counter,
-                };
-                arm.on_frame(now, Port::Can1, &valve.encode().unwrap());
+                arm.on_frame(now, Port::Can1, &open_valves(counter));
             }
             for frame in pins::imu_frames([0.1, 0.0, 0.0], [0.0, 0.0, 9.81]) {
                 arm.on_frame(now, Port::Can2, &frame);
@@ -93,4 +84,18 @@ fn drives_without_allocating(mode: ArmTargetMode) {
     let moves = arm_out.solenoid_a_ma.sum() + arm_out.solenoid_b_ma.sum() > 0.0;
     assert_eq!(moves, mode != ArmTargetMode::Off, "{mode:?}");
     assert!(arm_out.can1.frames().len() > 20 && drive_out.can1.frames().len() > 5);
+}
+
+fn open_valves(counter: u8) -> Frame {
+    let [fr_percent, fl_percent, mr_percent, ml_percent, br_percent, bl_percent] = [10.0; 6];
+    let valve = ArmValve {
+        fr_percent,
+        fl_percent,
+        mr_percent,
+        ml_percent,
+        br_percent,
+        bl_percent,
+        counter,
+    };
+    valve.encode().unwrap()
 }

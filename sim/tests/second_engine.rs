@@ -46,18 +46,35 @@ const STRAIGHT: Bounds = [
     ("wheel_speed", 6e-3),
     ("ground_force", 120.0),
 ];
-/// A bend, with wheels that scrub.
+/// A bend; wheels that scrub turn otherwise on rapier3d.
 const TURN: Bounds = [
-    ("x_m", 0.04),
-    ("y_m", 0.02),
+    ("x_m", 0.035),
+    ("y_m", 0.01),
     ("z_m", 6e-4),
-    ("yaw", 0.007),
+    ("yaw", 2e-3),
     ("roll", 7e-4),
     ("pitch", 1.2e-4),
+<<<<<<< sim/tests/second_engine.rs
+    ("joint", 6e-4),
+=======
     ("joint", 4e-3),
+>>>>>>> /tmp/bus.mine
     ("stroke", 6e-4),
     ("wheel_speed", 0.15),
-    ("ground_force", 210.0),
+    ("ground_force", 180.0),
+];
+/// A bend on the fast core.
+const TURN_REDUCED: Bounds = [
+    ("x_m", 4e-3),
+    ("y_m", 4e-3),
+    ("z_m", 2e-4),
+    ("yaw", 2e-4),
+    ("roll", 1e-4),
+    ("pitch", 1.2e-4),
+    ("joint", 4e-4),
+    ("stroke", 2e-4),
+    ("wheel_speed", 6e-3),
+    ("ground_force", 150.0),
 ];
 
 #[test]
@@ -75,7 +92,7 @@ fn a_straight_drive_agrees_with_mujoco() {
 #[test]
 fn a_bend_agrees_with_mujoco() {
     agrees::<RapierBodies>("turn", &TURN);
-    agrees::<ReducedBodies>("turn", &TURN);
+    agrees::<ReducedBodies>("turn", &TURN_REDUCED);
 }
 
 #[test]

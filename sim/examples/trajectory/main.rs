@@ -16,8 +16,7 @@ use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{Bodies, Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
 
-const USAGE: &str =
-    "usage: trajectory engines | grid TERRAIN | start TERRAIN | run ENGINE MANOEUVRE HZ [TERRAIN]";
+const USAGE: &str = "usage: trajectory engines | grid TERRAIN | start TERRAIN | run ENGINE MANOEUVRE HZ [TERRAIN [MACHINE]]";
 /// Our engines, by name.
 const ENGINES: [&str; 2] = ["rapier", "reduced"];
 
@@ -28,13 +27,17 @@ fn main() -> Result<(), String> {
         ["engines"] => println!("{}", ENGINES.join("\n")),
         ["grid", name] => print!("{}", ascii_grid(&terrain(name)?)),
         ["start", name] => println!("{}", start(&terrain(name)?)?),
-        ["run", engine, manoeuvre, rate, ref ground @ ..] => {
+        ["run", engine, manoeuvre, rate, ref rest @ ..] => {
             let manoeuvre = Manoeuvre::load(manoeuvre)?;
             let rate_hz = rate.parse().map_err(|error| format!("{rate}: {error}"))?;
-            let ground = terrain(ground.first().unwrap_or(&manoeuvre.terrain.as_str()))?;
+            let ground = terrain(rest.first().unwrap_or(&manoeuvre.terrain.as_str()))?;
+            let machine = match rest.get(1) {
+                Some(path) => Machine::load(path.as_ref()).map_err(|error| error.to_string())?,
+                None => Machine::xt28(),
+            };
             match engine {
-                "rapier" => run::<RapierBodies>(&manoeuvre, &ground, rate_hz),
-                "reduced" => run::<ReducedBodies>(&manoeuvre, &ground, rate_hz),
+                "rapier" => run::<RapierBodies>(&machine, &manoeuvre, &ground, rate_hz),
+                "reduced" => run::<ReducedBodies>(&machine, &manoeuvre, &ground, rate_hz),
                 other => return Err(format!("no engine `{other}`; {USAGE}")),
             }
         }
@@ -61,11 +64,11 @@ fn start(ground: &Terrain) -> Result<String, String> {
 }
 
 /// Prints the trajectory and what a step took of the processor.
-fn run<B: Bodies>(manoeuvre: &Manoeuvre, ground: &Terrain, rate_hz: u32) {
+fn run<B: Bodies>(machine: &Machine, manoeuvre: &Manoeuvre, ground: &Terrain, rate_hz: u32) {
     let strokes = PerWheel::splat(manoeuvre.start_stroke_m);
     let step = Duration::from_secs_f64(1.0 / f64::from(rate_hz));
-    let (machine, effects) = (Machine::xt28(), Effects::default());
-    let mut vehicle = Vehicle::<B>::with(&machine, &effects, ground, strokes, step);
+    let effects = Effects::default();
+    let mut vehicle = Vehicle::<B>::with(machine, &effects, ground, strokes, step);
     manoeuvre.settle(&mut vehicle, rate_hz);
     let mut samples = Vec::new();
     let begun = processor_ns();

@@ -6,6 +6,8 @@ mod engine;
 mod programs;
 mod trajectory;
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 
 use crate::workspace::{Outcome, Workspace};
@@ -30,6 +32,9 @@ pub(crate) struct SecondEngine {
     /// Compare in this manoeuvre alone
     #[arg(long, value_name = "NAME")]
     manoeuvre: Option<String>,
+    /// The machine that both sides build
+    #[arg(long, default_value = "machine/xt28.toml", value_name = "FILE")]
+    machine: PathBuf,
     /// An argument passed on to MuJoCo's side in the comparison, such as --mujoco=--impratio=10
     #[arg(long, value_name = "ARG", allow_hyphen_values = true)]
     mujoco: Vec<String>,
@@ -54,7 +59,7 @@ impl SecondEngine {
     /// # Errors
     /// When a side cannot be built or run.
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
-        let programs = Programs::prepare(workspace)?;
+        let programs = Programs::prepare(workspace, &self.machine)?;
         if self.only == Some(Part::Record) {
             comparison::record(&programs)?;
             return Ok(0);

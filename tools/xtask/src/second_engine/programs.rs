@@ -19,6 +19,7 @@ pub(crate) struct Programs {
     examples: PathBuf,
     python: PathBuf,
     grids: PathBuf,
+    machine: PathBuf,
 }
 
 /// What is run.
@@ -49,7 +50,7 @@ impl Programs {
     ///
     /// # Errors
     /// When something cannot be built or installed; the message says the remedy.
-    pub(crate) fn prepare(workspace: &Workspace) -> Outcome<Self> {
+    pub(crate) fn prepare(workspace: &Workspace, machine: &Path) -> Outcome<Self> {
         let mut build = Command::new(env!("CARGO"));
         build.current_dir(&workspace.root);
         build.args(["build", "--release", "--locked", "--package=xt28-sim", "--examples"]);
@@ -67,6 +68,7 @@ impl Programs {
             examples: workspace.target.join("release").join("examples"),
             python: python(workspace)?,
             grids,
+            machine: workspace.root.join(machine),
         })
     }
 
@@ -127,6 +129,7 @@ impl Programs {
         let mut command = self.example("trajectory");
         let rate = job.rate_hz.to_string();
         command.args(["run", engine, job.manoeuvre, rate.as_str(), job.terrain]);
+        command.arg(&self.machine);
         command
     }
 
@@ -135,7 +138,7 @@ impl Programs {
         command.current_dir(&self.root).env("PYTHONPATH", self.root.join(YARDSTICK));
         command.env("PYTHONDONTWRITEBYTECODE", "1");
         command.args(["-m", "xt28_mujoco", job.manoeuvre]);
-        command.arg("--machine").arg(self.root.join("machine").join("xt28.toml"));
+        command.arg("--machine").arg(&self.machine);
         command.arg("--manoeuvres").arg(self.manoeuvres());
         command.arg(format!("--rate={}", job.rate_hz));
         command.args(engine.mujoco_arguments()).args(job.mujoco);

@@ -28,6 +28,12 @@ fn any_event() -> impl Strategy<Value = Event> {
         CanId::Standard(0x1FD),
         CanId::Standard(0x2FD),
         CanId::Extended(1),
+        // A service tool's: UDS to one and to all, a request, connection management, a claim.
+        CanId::Extended(0x18DA_28F1),
+        CanId::Extended(0x18DB_33F1),
+        CanId::Extended(0x18EA_FFF9),
+        CanId::Extended(0x1CEC_28F9),
+        CanId::Extended(0x18EE_FF28),
     ];
     let port = prop::sample::select(vec![Port::Can1, Port::Can2, Port::Can3, Port::Can4]);
     let frame = (port, prop::sample::select(ids), prop::collection::vec(any::<u8>(), 0..=8))

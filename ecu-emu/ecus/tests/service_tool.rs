@@ -245,6 +245,41 @@ fn trouble_codes_are_counted_listed_and_cleared() {
 }
 
 #[test]
+fn a_stroke_that_leaps_is_a_fault_and_one_that_is_off_is_not() {
+    let mut bench = Bench::new();
+    let rest_mv = bench.arm_pins.stroke_mv[Wheel::Br];
+    bench.run(20);
+    bench.arm_pins.stroke_mv[Wheel::Br] = rest_mv + 200.0;
+    bench.run(50);
+    assert_eq!(bench.arm_status().state, ArmStatusState::Standby, "one leap, then off by 24 mm");
+    for tick in 0..10 {
+        bench.arm_pins.stroke_mv[Wheel::Br] = rest_mv + 100.0 * f64::from(tick % 2);
+        bench.tick();
+    }
+    assert_eq!(bench.arm_status().state, ArmStatusState::Fault);
+    // SPN 520196, FMI 10.
+    let found = Tool::new(ARM).ask(&mut bench, &[0x19, 2, 0x01]).unwrap();
+    assert_eq!(found, [0x59, 2, 0xFF, 0x04, 0xF0, 0xEA, 0xAF]);
+    bench.run(30);
+    assert_eq!(bench.arm_status().state, ArmStatusState::SafeStop, "quiet again");
+}
+
+#[test]
+fn a_wheel_without_pulses_is_missed_while_the_others_roll() {
+    let mut bench = Bench::new();
+    bench.drive_pins.wheel_hz = PerWheel::splat(700.0);
+    bench.drive_pins.wheel_hz[Wheel::Fr] = 0.0;
+    bench.run(102);
+    let mut tool = Tool::new(DRIVE);
+    let silent = [0x3A, 0xF0, 0xE8, 0xAF];
+    let mut found = || tool.ask(&mut bench, &[0x19, 2, 0x01]).unwrap()[3..].to_vec();
+    assert!(found().chunks(4).any(|code| code == silent), "SPN 520250, FMI 8");
+    bench.drive_pins.wheel_hz = PerWheel::splat(0.0);
+    let mut found = || tool.ask(&mut bench, &[0x19, 2, 0x01]).unwrap()[3..].to_vec();
+    assert!(found().chunks(4).all(|code| code != silent), "a machine at rest has no pulses");
+}
+
+#[test]
 fn a_stuck_stroke_under_an_open_valve_is_found() {
     let mut bench = Bench::new();
     bench.run(60);

@@ -275,6 +275,7 @@ fn a_wheel_without_pulses_is_missed_while_the_others_roll() {
     let mut found = || tool.ask(&mut bench, &[0x19, 2, 0x01]).unwrap()[3..].to_vec();
     assert!(found().chunks(4).any(|code| code == silent), "SPN 520250, FMI 8");
     bench.drive_pins.wheel_hz = PerWheel::splat(0.0);
+    bench.run(2);
     let mut found = || tool.ask(&mut bench, &[0x19, 2, 0x01]).unwrap()[3..].to_vec();
     assert!(found().chunks(4).all(|code| code != silent), "a machine at rest has no pulses");
 }

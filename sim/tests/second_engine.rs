@@ -49,19 +49,15 @@ const STRAIGHT: Bounds = [
 /// A bend; wheels that scrub turn otherwise on rapier3d.
 const TURN: Bounds = [
     ("x_m", 0.035),
-    ("y_m", 0.01),
+    ("y_m", 0.02),
     ("z_m", 6e-4),
-    ("yaw", 2e-3),
+    ("yaw", 7e-3),
     ("roll", 7e-4),
     ("pitch", 1.2e-4),
-<<<<<<< sim/tests/second_engine.rs
-    ("joint", 6e-4),
-=======
     ("joint", 4e-3),
->>>>>>> /tmp/bus.mine
     ("stroke", 6e-4),
     ("wheel_speed", 0.15),
-    ("ground_force", 180.0),
+    ("ground_force", 260.0),
 ];
 /// A bend on the fast core.
 const TURN_REDUCED: Bounds = [

@@ -21,6 +21,10 @@ const BRISTLE_DAMPING: f64 = 0.5;
 /// Passes over the points touched; two points need one, four in a gully some more.
 const PASSES: usize = 12;
 
+/// The rigid wheel's dry friction, but for a give of a millimetre or two before it slides.
+const NEAR_RIGID: Brush =
+    Brush { longitudinal_n_m: 1.0e7, lateral_n_m: 1.0e7, relaxation_m: f64::INFINITY };
+
 /// One tyre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tyre {
@@ -82,7 +86,10 @@ impl Tyre {
             stiffness_n_m: part.stiffness_n_m,
             damping_n_s_m: part.damping_n_s_m,
             friction: part.friction,
-            brush: part.brush,
+            brush: match part.brush {
+                Some(brush) => brush,
+                None => NEAR_RIGID,
+            },
             moves_kg,
         }
     }
@@ -206,7 +213,7 @@ mod tests {
 
     fn tyre(stiffness_n_m: f64, damping_n_s_m: f64, brush: Brush) -> Tyre {
         let nominal = Parts::new(&Machine::xt28(), &Effects::default()).tyres.0[0];
-        let part = TyrePart { stiffness_n_m, damping_n_s_m, brush, ..nominal };
+        let part = TyrePart { stiffness_n_m, damping_n_s_m, brush: Some(brush), ..nominal };
         Tyre::new(&part, [600.0, 360.0])
     }
 

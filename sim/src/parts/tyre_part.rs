@@ -15,8 +15,9 @@ pub struct TyrePart {
     pub friction: f64,
     /// Share of the wheel's rolling that does not become travel: v = (1 - slip) w R.
     pub slip: f64,
-    /// Give of the patch along the ground.
-    pub brush: Brush,
+    /// Give of the patch along the ground; `None` for the rigid wheel, which sticks until it slides.
+    /// How near to that a solver comes is its own matter.
+    pub brush: Option<Brush>,
 }
 
 /// Give of a tyre's contact patch along the ground.
@@ -31,10 +32,6 @@ pub struct Brush {
     pub relaxation_m: f64,
 }
 
-/// The rigid wheel's dry friction, but for a give of millimetres before it slides.
-const NEAR_RIGID: Brush =
-    Brush { longitudinal_n_m: 1.0e7, lateral_n_m: 1.0e7, relaxation_m: f64::INFINITY };
-
 impl TyrePart {
     /// The tyre of this machine, with what the effects change of it.
     pub(super) fn new(machine: &Machine, effects: &WheelEffects) -> Self {
@@ -45,12 +42,12 @@ impl TyrePart {
             SoftTyre { stiffness_n_m: v.tyre_stiffness_n_m, damping_n_s_m: v.tyre_damping_n_s_m };
         let SoftTyre { stiffness_n_m, damping_n_s_m } = if softened { *soft } else { nominal };
         let brush = match v.tyre_model {
-            TyreModel::Rigid => NEAR_RIGID,
-            TyreModel::Brush => Brush {
+            TyreModel::Rigid => None,
+            TyreModel::Brush => Some(Brush {
                 longitudinal_n_m: v.tyre_longitudinal_n_m,
                 lateral_n_m: v.tyre_lateral_n_m,
                 relaxation_m: v.tyre_relaxation_m,
-            },
+            }),
         };
         Self {
             stiffness_n_m,

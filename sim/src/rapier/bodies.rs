@@ -11,7 +11,7 @@ use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
 use super::shapes::Ground;
 use super::tyre_contact::{Rim, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
-use crate::{Parts, Terrain};
+use crate::{Parts, RollHinge, Terrain};
 
 /// Index of a hinge's own angle among a joint's six coordinates.
 const HINGE: usize = 3;
@@ -29,6 +29,7 @@ pub struct RapierBodies {
     tyres: PerWheel<TyreContact>,
     ground: ColliderHandle,
     joints: [Hinge; 2],
+    roll: Option<(Hinge, RollHinge)>,
     arm_hinges: PerWheel<Hinge>,
     wheel_hinges: PerWheel<Hinge>,
     /// Sense in which each arm extends about +y.
@@ -57,7 +58,7 @@ impl Bodies for RapierBodies {
                     InteractionTestMode::And,
                 )),
         );
-        let frames = insert_frames(parts, &mut world);
+        let (frames, turned) = insert_frames(parts, &mut world);
         let mut arms = PerWheel::splat(RigidBodyHandle::invalid());
         let mut wheels = arms;
         for wheel in Wheel::ALL {
@@ -75,6 +76,7 @@ impl Bodies for RapierBodies {
             tyres: PerWheel::from_fn(|wheel| TyreContact::new(parts, wheel)),
             ground,
             joints: Default::default(),
+            roll: None,
             arm_hinges: PerWheel::splat(Hinge::default()),
             wheel_hinges: PerWheel::splat(Hinge::default()),
             extends: PerWheel::from_fn(|wheel| parts.arms[wheel].extends),
@@ -82,7 +84,7 @@ impl Bodies for RapierBodies {
             chassis_force_n: 0.0,
         };
         bodies.free_root();
-        bodies.index_hinges();
+        bodies.index_hinges(turned, parts.roll_hinge);
         bodies.place(parts, terrain, stroke_m);
         bodies
     }
@@ -153,6 +155,10 @@ impl Clone for RapierBodies {
 
 impl RapierBodies {
     fn set_springs(&mut self, loads: &Loads) {
+        if let Some((hinge, law)) = self.roll {
+            let spring = roll_spring(&law, self.hinge_motion(hinge).angle_rad);
+            set_spring(self.multibody_mut(), hinge, &spring, 1.0);
+        }
         let (joints, arms, wheels) = (self.joints, self.arm_hinges, self.wheel_hinges);
         let extends = self.extends;
         let multibody = self.multibody_mut();
@@ -252,16 +258,18 @@ impl RapierBodies {
     }
 
     /// Looks up where each hinge sits.
-    fn index_hinges(&mut self) {
+    fn index_hinges(&mut self, turned: [RigidBodyHandle; 2], roll: Option<RollHinge>) {
         let find = |body: RigidBodyHandle| {
             let id =
                 self.world.multibody_joints.rigid_body_link(body).expect("every part is linked");
             let link = self.multibody().link(id.id).expect("the link is there");
             Hinge { link: id.id, dof: link.assembly_id() }
         };
-        let joints = [find(self.frames[1]), find(self.frames[2])];
+        let joints = turned.map(find);
+        let roll = roll.map(|law| (find(self.frames[1]), law));
         let (arms, wheels) = (self.arms.map(find), self.wheels.map(find));
         (self.joints, self.arm_hinges, self.wheel_hinges) = (joints, arms, wheels);
+        self.roll = roll;
     }
 
     /// Takes the root's freedoms from its body; clears the engine's default joint damping.
@@ -296,6 +304,20 @@ impl RapierBodies {
         multibody.forward_kinematics(&world.bodies, false);
         multibody.update_rigid_bodies(&mut world.bodies, true);
     }
+}
+
+/// Stiffness of the roll hinge's metal stops, Nm/rad (assumed).
+const ROLL_STOP_NM: f64 = 2.0e7;
+
+/// A roll hinge's spring, or its stop once it is past it.
+fn roll_spring(law: &RollHinge, angle_rad: f64) -> HingeSpring {
+    let RollHinge { stiffness_nm, damping_nms, max_rad } = *law;
+    if angle_rad.abs() <= max_rad {
+        return HingeSpring { stiffness_nm, damping_nms, rest_rad: 0.0 };
+    }
+    let both_nm = stiffness_nm + ROLL_STOP_NM;
+    let rest_rad = max_rad.copysign(angle_rad) * ROLL_STOP_NM / both_nm;
+    HingeSpring { stiffness_nm: both_nm, damping_nms: damping_nms + 0.01 * ROLL_STOP_NM, rest_rad }
 }
 
 /// The multibody of a part; borrows the joints alone, so that the bodies stay free to be read.

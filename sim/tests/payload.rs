@@ -1,0 +1,142 @@
+//! Masses and ground of the whole vehicle: load, centre of mass, slope, a joint that rolls.
+
+use std::path::Path;
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
+use xt28_sim::effects::Overlay;
+use xt28_sim::{Actuation, Effects, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
+
+fn overlay(text: &str) -> Effects {
+    Overlay::parse(text, Path::new("o.toml")).unwrap().effects()
+}
+
+/// The state after 8 s at rest on level ground, wheels free to roll: braked, they push against one
+/// another and the cylinders weigh that too.
+fn stand(effects: &Effects) -> VehicleState {
+    stand_on(&Machine::xt28(), effects, &Terrain::Flat)
+}
+
+fn stand_on(machine: &Machine, effects: &Effects, terrain: &Terrain) -> VehicleState {
+    let mut vehicle: Vehicle =
+        Vehicle::with(machine, effects, terrain, PerWheel::splat(0.17), STEP);
+    for _ in 0..1600 {
+        vehicle.step(&Actuation::idle(1200.0));
+    }
+    *vehicle.state()
+}
+
+/// Weight that the cylinders say stands on the wheels, through the linkage, N.
+fn weighed_n(s: &VehicleState) -> f64 {
+    let machine = Machine::xt28();
+    let own_kg = machine.masses.wheel_kg + machine.masses.arm_kg * machine.vehicle.arm_com_share;
+    let on_wheel = |wheel: Wheel| {
+        let ratio = machine.linkage().at_stroke(s.stroke_m[wheel]).force_ratio;
+        s.cylinder_force_n[wheel] * ratio + own_kg * GRAVITY_M_S2
+    };
+    Wheel::ALL.into_iter().map(on_wheel).sum()
+}
+
+#[test]
+fn cylinders_weigh_any_load_up_to_the_most() {
+    let machine = Machine::xt28();
+    for mass_kg in [0.0, 1.0, 4000.0, machine.masses.load_max_kg] {
+        let mut effects = Effects::default();
+        effects.masses.payload.mass_kg = mass_kg;
+        let s = stand(&effects);
+        let weight_n = (machine.mass_kg() + mass_kg) * GRAVITY_M_S2;
+        assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 2e-3, "{mass_kg}");
+        let weighed_n = weighed_n(&s);
+        assert!(
+            (weighed_n / weight_n - 1.0).abs() < 0.01,
+            "{mass_kg}: {weighed_n} N, {weight_n} N"
+        );
+    }
+}
+
+/// A load in the bunk is carried by the rear and the middle wheels; one to the left by the left ones.
+#[test]
+fn a_load_shows_where_it_lies() {
+    let empty = stand(&Effects::default());
+    let laden = stand(&overlay("[[effect]]\nname = \"payload\"\nmass_kg = 4000"));
+    let gain = |s: &VehicleState, wheel| s.ground_force_n[wheel] - empty.ground_force_n[wheel];
+    let behind = [Wheel::Mr, Wheel::Ml, Wheel::Br, Wheel::Bl].map(|wheel| gain(&laden, wheel));
+    assert!(behind.iter().sum::<f64>() > 0.95 * 4000.0 * GRAVITY_M_S2, "{behind:?}");
+    let left = overlay("[[effect]]\nname = \"payload\"\nmass_kg = 4000\nlateral_m = 0.2");
+    let left = stand(&left);
+    let side = |s: &VehicleState, side: Side| -> f64 {
+        Wheel::ALL.into_iter().filter(|w| w.side() == side).map(|w| s.ground_force_n[w]).sum()
+    };
+    let moment_nm = (side(&left, Side::Left) - side(&left, Side::Right)) * 2.35 / 2.0;
+    let wanted_nm = 4000.0 * GRAVITY_M_S2 * 0.2;
+    assert!((moment_nm / wanted_nm - 1.0).abs() < 0.1, "{moment_nm} Nm of {wanted_nm} Nm");
+    let back = overlay("[[effect]]\nname = \"payload\"\nmass_kg = 4000\nlongitudinal_m = -0.8");
+    let back = stand(&back);
+    let rear = |s: &VehicleState| s.ground_force_n[Wheel::Br] + s.ground_force_n[Wheel::Bl];
+    assert!(rear(&back) > rear(&laden) + 2000.0, "{} {}", rear(&back), rear(&laden));
+}
+
+#[test]
+fn a_shifted_centre_of_mass_moves_load_and_no_weight() {
+    let nominal = stand(&Effects::default());
+    let shift = overlay("[[effect]]\nname = \"com-shift\"\nx_m = 0.2\ny_m = 0.1");
+    let s = stand(&shift);
+    let weight_n = nominal.ground_force_n.sum();
+    assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 1e-3);
+    let front = |s: &VehicleState| s.ground_force_n[Wheel::Fr] + s.ground_force_n[Wheel::Fl];
+    assert!(front(&s) > front(&nominal) + 1500.0);
+    assert!(s.ground_force_n[Wheel::Fl] > s.ground_force_n[Wheel::Fr] + 1000.0);
+    // Shifting up alone changes no standing load.
+    let up = stand(&overlay("[[effect]]\nname = \"com-shift\"\nz_m = 0.3"));
+    for wheel in Wheel::ALL {
+        assert!((up.ground_force_n[wheel] - nominal.ground_force_n[wheel]).abs() < 30.0, "{wheel}");
+    }
+}
+
+/// On ground that rises by a grade the IMU sees the lean, the receiver the climb, the wheels less
+/// normal load; the ground's own terms (strokes, joints) stay.
+#[test]
+fn a_slope_is_seen_by_every_sensor_as_a_slope() {
+    let grade = 0.1_f64;
+    let up = overlay("[[effect]]\nname = \"terrain-slope\"\ngrade_x_rad = 0.1");
+    let (level, s) = (stand(&Effects::default()), stand(&up));
+    assert!((s.pitch_rad - level.pitch_rad - grade).abs() < 5e-3, "{}", s.pitch_rad);
+    assert!((s.front_specific_force_m_s2[0] / GRAVITY_M_S2 - s.pitch_rad.sin()).abs() < 1e-3);
+    let weight_n = Machine::xt28().mass_kg() * GRAVITY_M_S2 * grade.cos();
+    assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 2e-3);
+    let side = stand(&overlay("[[effect]]\nname = \"terrain-slope\"\ngrade_y_rad = 0.1"));
+    // Ground rising to the left lifts the left side.
+    assert!((side.roll_rad + grade).abs() < 0.02, "{}", side.roll_rad);
+    assert!(side.ground_force_n[Wheel::Fr] > side.ground_force_n[Wheel::Fl] + 3000.0);
+
+    // Driving up, a metre of way is a metre times the sine of climb.
+    let mut vehicle: Vehicle =
+        Vehicle::with(&Machine::xt28(), &up, &Terrain::Flat, PerWheel::splat(0.17), STEP);
+    let mut at_2_s = *vehicle.state();
+    for step in 0..2000 {
+        vehicle.step(&Actuation { pump_displacement: [1.0; 2], ..Actuation::idle(1200.0) });
+        if step == 1000 {
+            at_2_s = *vehicle.state();
+        }
+    }
+    let way =
+        |axis: usize| vehicle.state().antenna_position_m[axis] - at_2_s.antenna_position_m[axis];
+    assert!((way(2).atan2(way(0)) - grade).abs() < 2e-3, "{} {}", way(0), way(2));
+    let climb_m_s = vehicle.state().antenna_velocity_m_s;
+    assert!((climb_m_s[2].atan2(climb_m_s[0]) - grade).abs() < 5e-3, "{climb_m_s:?}");
+}
+
+/// With a joint that rolls, the rear wheels on one side of a hump do not lift the front ones.
+#[test]
+fn a_roll_hinge_lets_the_frames_twist() {
+    let hump = Ramp { x_m: [-1.0, -0.6, 0.6, 1.0], height_m: 0.25, y_min_m: -1.9, y_max_m: -0.5 };
+    let terrain = Terrain::ramp(&hump);
+    let mut free = Machine::xt28();
+    free.vehicle.roll_hinge = true;
+    let least = |s: &VehicleState| s.ground_force_n.0.into_iter().fold(f64::MAX, f64::min);
+    let stiff = stand_on(&Machine::xt28(), &Effects::default(), &terrain);
+    let twisting = stand_on(&free, &Effects::default(), &terrain);
+    assert!(twisting.roll_rad > stiff.roll_rad + 0.01, "{} {}", twisting.roll_rad, stiff.roll_rad);
+    assert!(least(&twisting) > least(&stiff) + 1000.0, "{} {}", least(&twisting), least(&stiff));
+    let weight_n = free.mass_kg() * GRAVITY_M_S2;
+    assert!((twisting.ground_force_n.sum() / weight_n - 1.0).abs() < 5e-3);
+}

@@ -60,7 +60,7 @@ impl Bodies for ReducedBodies {
             turn: DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize(),
             joint_rad: [0.0; 2],
             roll_rad: 0.0,
-            patch_m: [[0.0; 2]; 6],
+            bristle_m: [[0.0; 2]; 6],
             arm_rad: stroke_m.map(|stroke_m| parts.arm_angle_rad(stroke_m)).0,
             rate: [0.0; FREEDOMS],
         };
@@ -104,7 +104,7 @@ impl Bodies for ReducedBodies {
         self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
         for (i, patch) in patches.iter().enumerate() {
             let own = contacts.iter().filter(|contact| contact.body == Body::Wheel(i));
-            self.state.patch_m[i] = patch.deflection_m(own);
+            self.state.bristle_m[i] = patch.end_m(own);
         }
         self.state.advance(dt_s);
         self.note_forces(&contacts, dt_s);

@@ -123,6 +123,68 @@ fn it_stands_drives_and_climbs_where_the_reference_does() {
     }
 }
 
+/// Ground and commands drawn from a seed.
+#[test]
+fn it_goes_where_the_reference_goes_on_ground_and_commands_of_chance() {
+    for seed in 0..4_u32 {
+        let draw = |k: u32| ((f64::from(seed * 31 + k) * 12.989_8).sin() * 43_758.545_3).fract();
+        let ground = Grid::from_fn(Extent::default(), |x, y| {
+            let wave = |k: u32, length_m: f64| {
+                let heading = 6.3 * draw(k);
+                let along = x * heading.cos() + y * heading.sin();
+                (6.3 * along / length_m + 6.3 * draw(k + 1)).sin()
+            };
+            0.08 * wave(1, 4.0) + 0.05 * wave(3, 2.5) + 0.02 * wave(5, 1.2)
+        });
+        let command = |t: f64| Actuation {
+            pump_displacement: [(t / 2.0).min(1.0); 2],
+            steer_opening: [0.2 * (0.7 * t + draw(7)).sin(), 0.15 * (0.6 * t + draw(8)).sin()],
+            arm_opening: PerWheel::from_fn(|w| 0.1 * (t + draw(9 + w.index() as u32)).sin()),
+            ..idle()
+        };
+        let apart_m = against_rapier(&Terrain::Grid(Arc::new(ground)), command);
+        assert!(apart_m < 0.05, "seed {seed}: {apart_m} m apart");
+    }
+}
+
+#[test]
+fn a_boulder_under_the_belly_is_felt_and_a_wheel_s_is_not() {
+    let boulder = |x_m: f64, y_m: f64| {
+        Terrain::Grid(Arc::new(Grid::from_fn(Extent::default(), move |x, y| {
+            let apart2 = (x - x_m).powi(2) + (y - y_m).powi(2);
+            0.8 * (1.0 - apart2 / 0.36).max(0.0).sqrt()
+        })))
+    };
+    let force_n = |terrain: &Terrain| {
+        let mut vehicle = settled::<ReducedBodies>(terrain, 120);
+        let drive = Actuation { pump_displacement: [1.0; 2], ..idle() };
+        let states = run(&mut vehicle, 120, 8.0, |_| drive);
+        assert!(states.iter().all(|s| s.position_m.iter().all(|m| m.is_finite())));
+        states.iter().map(|s| s.chassis_force_n).fold(0.0, f64::max)
+    };
+    assert!(force_n(&boulder(4.0, 0.0)) > 1e3);
+    assert_eq!(force_n(&boulder(4.0, 4.0)), 0.0);
+}
+
+#[test]
+fn slippery_ground_takes_its_share_of_the_rolling() {
+    let mut effects = Effects::default();
+    for wheel in Wheel::ALL {
+        effects.wheels[wheel].slippery_ground.slip = 0.1;
+    }
+    let machine = Machine::xt28();
+    let step = Duration::from_secs_f64(1.0 / 120.0);
+    let strokes = PerWheel::splat(0.17);
+    let mut vehicle =
+        Vehicle::<ReducedBodies>::with(&machine, &effects, &Terrain::Flat, strokes, step);
+    let drive = Actuation { pump_displacement: [1.0; 2], ..idle() };
+    let states = run(&mut vehicle, 120, 12.0, |_| drive);
+    let [early, late] = [states.len() - 241, states.len() - 1].map(|i| states[i]);
+    let gone_m = late.position_m[0] - early.position_m[0];
+    let rolled_m = 2.0 * late.wheel_speed_rad_s.mean() * machine.wheels.radius_m;
+    assert!((gone_m / rolled_m - 0.9).abs() < 5e-3, "{gone_m} m of {rolled_m} m");
+}
+
 #[test]
 fn a_clone_goes_on_bit_for_bit() {
     let mut vehicle = settled::<ReducedBodies>(&gentle(), 120);
@@ -158,8 +220,11 @@ fn outputs(s: &VehicleState) -> Vec<f64> {
     out
 }
 
+/// One number of the machine.
+type Number = fn(&mut Machine) -> &mut f64;
+
 /// What a run of 2 s after settling shows, with one number of the machine off by a share.
-fn nudged(terrain: &Terrain, number: fn(&mut Machine) -> &mut f64, share: f64) -> Vec<Vec<f64>> {
+fn nudged(terrain: &Terrain, number: Number, share: f64) -> Vec<Vec<f64>> {
     let mut machine = Machine::xt28();
     *number(&mut machine) *= 1.0 + share;
     let mut vehicle = vehicle::<ReducedBodies>(&machine, terrain, 120);
@@ -170,7 +235,7 @@ fn nudged(terrain: &Terrain, number: fn(&mut Machine) -> &mut f64, share: f64) -
 /// Central differences over steps of 1e-6 and 1e-5 agree: there is neither noise nor a jump.
 #[test]
 fn outputs_are_smooth_in_every_parameter() {
-    let numbers: [(&str, fn(&mut Machine) -> &mut f64); 7] = [
+    let numbers: [(&str, Number); 7] = [
         ("front frame's mass", |m| &mut m.masses.front_frame_kg),
         ("lock's stiffness", |m| &mut m.hydraulics.lock_stiffness_n_m),
         ("valve's speed", |m| &mut m.hydraulics.speed_full_m_s),

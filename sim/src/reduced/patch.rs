@@ -1,44 +1,70 @@
-//! How a wheel's contact patch takes force along the ground: at once, or by its give.
+//! How a wheel's contact patch takes force along the ground: the brush.
 //!
-//! The brush: the patch deflects by what its points slip, and its springs make the force; rolling
-//! renews it over the relaxation length, so a steady slip angle ends in a steady deflection. The
-//! step is implicit, with the deflection at its end. What friction cannot carry slides off.
+//! Bristles deflect by what their points slip and are renewed as the wheel rolls, so a steady slip
+//! angle ends in a steady deflection; their springs and dampers make the force, as far as friction
+//! carries it. The law is [`crate::Tyre`]'s; here the deflection and its rate at the step's end are
+//! functions of the velocity that the solver looks for. A rigid wheel has no bristles and sticks.
 
 use glam::{DMat3, DVec3};
 
 use super::contact::{Contact, Grip, outer};
 use crate::{Brush, TyrePart};
 
-/// A wheel's patch over a step: directions, and what it makes of the patch's give.
+/// Damping of the bristles as a share of critical with a wheel's mass (assumed).
+const BRISTLE_DAMPING: f64 = 0.5;
+
+/// A wheel's patch over a step: directions, and what it makes of the bristles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patch {
-    brush: Option<Brush>,
-    /// Share of the deflection that rolling leaves over the step.
-    kept: f64,
-    /// Deflection at the step's start along the rolling and along the axle, m.
-    deflection_m: [f64; 2],
+    bristles: Option<Bristles>,
+    friction: f64,
     /// Slip of the ground itself along the rolling, m/s: what of the rolling is no travel.
     loose_m_s: f64,
     axle: DVec3,
     dt_s: f64,
 }
 
-impl Patch {
-    /// The patch of a tyre whose wheel turns at `rolling_m_s` at its rim.
-    pub(super) fn new(
-        tyre: &TyrePart,
-        deflection_m: [f64; 2],
-        axle: DVec3,
-        rolling_m_s: f64,
-        dt_s: f64,
-    ) -> Self {
-        let renewed = tyre.brush.map_or(0.0, |b| rolling_m_s.abs() * dt_s / b.relaxation_m);
+/// The brush of a patch, along the rolling and along the axle.
+#[derive(Clone, Copy, Debug)]
+struct Bristles {
+    stiffness_n_m: [f64; 2],
+    damping_n_s_m: [f64; 2],
+    /// Share of the deflection that rolling leaves over the step.
+    kept: f64,
+    /// Deflection at the step's start, m.
+    start_m: [f64; 2],
+}
+
+impl Bristles {
+    fn new(brush: &Brush, wheel: &Rolling, dt_s: f64) -> Self {
+        let stiffness_n_m = [brush.longitudinal_n_m, brush.lateral_n_m];
+        let damping = |k: f64| 2.0 * BRISTLE_DAMPING * (k * wheel.wheel_kg).sqrt();
         Self {
-            brush: tyre.brush,
-            kept: 1.0 / (1.0 + renewed),
-            deflection_m,
-            loose_m_s: tyre.slip * rolling_m_s,
-            axle,
+            stiffness_n_m,
+            damping_n_s_m: stiffness_n_m.map(damping),
+            kept: 1.0 / (1.0 + wheel.rim_m_s.abs() * dt_s / brush.relaxation_m),
+            start_m: wheel.bristle_m,
+        }
+    }
+}
+
+/// A wheel as its patch sees it at the start of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rolling {
+    pub(super) bristle_m: [f64; 2],
+    pub(super) axle: DVec3,
+    /// Speed of the rim, m/s.
+    pub(super) rim_m_s: f64,
+    pub(super) wheel_kg: f64,
+}
+
+impl Patch {
+    pub(super) fn new(tyre: &TyrePart, wheel: &Rolling, dt_s: f64) -> Self {
+        Self {
+            bristles: tyre.brush.map(|brush| Bristles::new(&brush, wheel, dt_s)),
+            friction: tyre.friction,
+            loose_m_s: tyre.slip * wheel.rim_m_s,
+            axle: wheel.axle,
             dt_s,
         }
     }
@@ -50,20 +76,20 @@ impl Patch {
         [rolling, normal.cross(rolling)]
     }
 
-    /// The grip of a contact with this normal.
+    /// The grip of a contact with this normal: k z + c z' with z = kept (z0 + dt v).
     pub(super) fn grip(&self, normal: DVec3) -> Grip {
         let directions = self.directions(normal);
-        let mut grip = match &self.brush {
+        let mut grip = match &self.bristles {
             None => Grip::rigid(normal, self.dt_s),
-            Some(brush) => {
+            Some(bristles) => {
                 let mut grip = Grip { hold: DVec3::ZERO, stick: DMat3::ZERO };
-                let springs = [brush.longitudinal_n_m, brush.lateral_n_m];
-                for ((along, spring), deflection_m) in
-                    directions.into_iter().zip(springs).zip(self.deflection_m)
-                {
-                    let impulse_n_s_m = spring * self.kept * self.dt_s;
-                    grip.hold += along * (impulse_n_s_m * deflection_m);
-                    grip.stick += outer(along, along * (impulse_n_s_m * self.dt_s));
+                for (i, along) in directions.into_iter().enumerate() {
+                    // Impulses per deflection and per velocity of it.
+                    let spring = bristles.stiffness_n_m[i] * self.dt_s;
+                    let damper = bristles.damping_n_s_m[i];
+                    let end = (spring + damper) * bristles.kept;
+                    grip.hold += along * ((end - damper) * bristles.start_m[i]);
+                    grip.stick += outer(along, along * (end * self.dt_s));
                 }
                 grip
             }
@@ -74,24 +100,35 @@ impl Patch {
         grip
     }
 
-    /// The deflection at the step's end: what the force says, which friction may have cut; m.
-    pub(super) fn deflection_m<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> [f64; 2] {
-        let Some(brush) = &self.brush else { return [0.0; 2] };
-        let (mut sum, mut weight) = ([0.0; 2], 0.0);
+    /// The deflection at the step's end, m: bristles slide where friction cannot hold them. Several
+    /// points touched share one brush, each by its load.
+    pub(super) fn end_m<'a>(&self, contacts: impl Iterator<Item = &'a Contact>) -> [f64; 2] {
+        let Some(bristles) = &self.bristles else { return [0.0; 2] };
+        let (mut sum_m, mut load_n, mut weight) = ([0.0; 2], 0.0, 0.0);
         for contact in contacts {
-            let impulse = contact.impulse(contact.velocity);
-            if impulse != DVec3::ZERO {
-                let directions = self.directions(contact.normal);
-                for (sum, along) in sum.iter_mut().zip(directions) {
-                    *sum -= along.dot(impulse) / self.dt_s;
+            let own_n = contact.impulse(contact.velocity).dot(contact.normal) / self.dt_s;
+            if own_n > 0.0 {
+                let [rolling, axle] = self.directions(contact.normal);
+                let slip_m_s =
+                    [rolling.dot(contact.velocity) + self.loose_m_s, axle.dot(contact.velocity)];
+                for i in 0..2 {
+                    let carried_m = bristles.kept * (bristles.start_m[i] + self.dt_s * slip_m_s[i]);
+                    sum_m[i] += own_n * carried_m;
                 }
+                load_n += own_n;
                 weight += contact.weight;
             }
         }
-        if weight == 0.0 {
+        if load_n <= 0.0 {
             return [0.0; 2];
         }
-        [sum[0] / (brush.longitudinal_n_m * weight), sum[1] / (brush.lateral_n_m * weight)]
+        let end_m = sum_m.map(|m| m / load_n);
+        let k = bristles.stiffness_n_m;
+        let held_n = (end_m[0] * k[0]).hypot(end_m[1] * k[1]);
+        // Each point has a share of the springs; together they carry what the brush does.
+        let limit_n = self.friction * load_n / weight;
+        let share = if held_n > limit_n { limit_n / held_n } else { 1.0 };
+        end_m.map(|m| m * share)
     }
 }
 
@@ -118,7 +155,9 @@ mod tests {
     fn after_a_second(tyre: &TyrePart, velocity: DVec3, depth_m: f64) -> [f64; 2] {
         let mut deflection_m = [0.0; 2];
         for _ in 0..200 {
-            let patch = Patch::new(tyre, deflection_m, DVec3::Y, 1.0, DT_S);
+            let wheel =
+                Rolling { bristle_m: deflection_m, axle: DVec3::Y, rim_m_s: 1.0, wheel_kg: 550.0 };
+            let patch = Patch::new(tyre, &wheel, DT_S);
             let place = (Body::Wheel(0), DVec3::ZERO, DVec3::Z);
             // Two minima that share one contact are as one.
             let contacts = [0.3, 0.7].map(|weight| {
@@ -127,7 +166,7 @@ mod tests {
                 contact.velocity = velocity;
                 contact
             });
-            deflection_m = patch.deflection_m(contacts.iter());
+            deflection_m = patch.end_m(contacts.iter());
         }
         deflection_m
     }

@@ -28,8 +28,8 @@ pub(super) struct State {
     pub(super) roll_rad: f64,
     /// Arm angles from the reference pose, extending > 0, rad.
     pub(super) arm_rad: [f64; 6],
-    /// Deflection of each wheel's patch along its rolling and along its axle, m.
-    pub(super) patch_m: [[f64; 2]; 6],
+    /// Deflection of each wheel's bristles along its rolling and along its axle, m.
+    pub(super) bristle_m: [[f64; 2]; 6],
     /// Velocities; the front frame's twist is about its origin.
     pub(super) rate: Generalized,
 }

@@ -31,7 +31,7 @@ fn bent(seed: f64) -> State {
         turn: DQuat::from_euler(glam::EulerRot::ZYX, wave(3, 3.0), wave(4, 0.5), wave(5, 0.5)),
         joint_rad: [wave(6, 0.4), wave(7, 0.4)],
         roll_rad: wave(15, 0.2),
-        patch_m: [[0.0; 2]; 6],
+        bristle_m: [[0.0; 2]; 6],
         arm_rad: core::array::from_fn(|i| wave(8 + i, 0.3)),
         rate: core::array::from_fn(|i| wave(20 + i, if i < WHEELS { 0.7 } else { 3.0 })),
     }

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 use xt28_machine::Wheel;
 
 use super::contact::ContactLaw;
-use super::patch::Patch;
+use super::patch::{Patch, Rolling};
 use super::pose::{Pose, State, WHEELS};
 use crate::{HullBall, Part, Parts, RollHinge, TyrePart};
 
@@ -85,8 +85,13 @@ impl Tree {
 
     /// The patch of wheel `i` at the start of a step.
     pub(super) fn patch(&self, i: usize, pose: &Pose, state: &State, dt_s: f64) -> Patch {
-        let rolling_m_s = state.rate[WHEELS + i] * self.radius_m;
-        Patch::new(&self.tyres[i], state.patch_m[i], pose.arm[i].axle, rolling_m_s, dt_s)
+        let wheel = Rolling {
+            bristle_m: state.bristle_m[i],
+            axle: pose.arm[i].axle,
+            rim_m_s: state.rate[WHEELS + i] * self.radius_m,
+            wheel_kg: self.arms[i].wheel_kg,
+        };
+        Patch::new(&self.tyres[i], &wheel, dt_s)
     }
 
     /// The frame that carries arm `i`.

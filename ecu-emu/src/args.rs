@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use ecu_emu::{Profile, Quirks, SensorFault};
+use ecu_emu::{Profile, Quirks, SensorFault, UnknownWire, Wire};
 
 /// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
 ///
@@ -40,6 +40,12 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) operator: Option<PathBuf>,
 
+    /// Put another of the machine's wires on an interface of its own, both ways: `inertial`,
+    /// `left-armrest`, `right-armrest`, `engine` or `display`. Where an armrest's is named and no
+    /// operator, the armrests are somebody else's
+    #[arg(long = "wire", value_name = "WIRE=INTERFACE", value_parser = wire)]
+    pub(crate) wires: Vec<(Wire, String)>,
+
     /// Switch an oddity of the firmware on or off (docs/firmware-2016.md); profile 2016 only
     #[arg(long = "quirk", value_name = "NAME=on|off", value_parser = quirk)]
     pub(crate) quirks: Vec<(String, bool)>,
@@ -72,6 +78,12 @@ pub(crate) struct Args {
     /// Write what is true of the machine, tick by tick (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) truth: Option<PathBuf>,
+}
+
+fn wire(text: &str) -> Result<(Wire, String), String> {
+    let (wire, interface) = text.split_once('=').ok_or("give WIRE=INTERFACE")?;
+    let wire = wire.parse().map_err(|error: UnknownWire| error.to_string())?;
+    Ok((wire, interface.to_owned()))
 }
 
 fn quirk(text: &str) -> Result<(String, bool), String> {

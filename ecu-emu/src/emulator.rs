@@ -212,6 +212,11 @@ impl Emulator {
         }
     }
 
+    /// A frame from somebody else on another of the machine's wires: an armrest, a display, a bench.
+    pub fn on_wire_frame(&mut self, now: SimTime, wire: Wire, frame: &Frame) {
+        self.ecus.on_wire(now, wire, frame);
+    }
+
     /// What was on another of the machine's wires in the last tick, in the order it was sent.
     #[must_use]
     pub fn on_wire(&self, wire: Wire) -> &[Frame] {

@@ -27,6 +27,6 @@ pub use operator::{Operator, OperatorError};
 pub use power::{EcuName, PowerEvent, PowerKind};
 pub use sensor_faults::{FaultKind, Sensor, SensorFault, WheelName};
 pub use truth::{TRUTH_HEADER, write_truth_row};
-pub use wires::Wire;
+pub use wires::{UnknownWire, Wire};
 pub use xt28_ecus::Profile;
 pub use xt28_ecus::firmware_2016::Quirks;

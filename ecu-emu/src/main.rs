@@ -6,6 +6,7 @@
 mod args;
 mod realtime;
 mod serial;
+mod wire_buses;
 
 use std::process::ExitCode;
 

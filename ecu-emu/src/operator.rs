@@ -51,6 +51,8 @@ pub enum OperatorError {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Operator {
     actions: Vec<Action>,
+    /// The armrests send nothing, but for an action that lets them.
+    pads_silent: bool,
 }
 
 #[derive(Debug, Deserialize)]
@@ -88,7 +90,13 @@ impl Operator {
     /// One who touches nothing.
     #[must_use]
     pub const fn idle() -> Self {
-        Self { actions: Vec::new() }
+        Self { actions: Vec::new(), pads_silent: false }
+    }
+
+    /// Nobody, and no armrests either: somebody else's speak on their wires.
+    #[must_use]
+    pub const fn absent() -> Self {
+        Self { actions: Vec::new(), pads_silent: true }
     }
 
     /// From a file.
@@ -121,13 +129,13 @@ impl Operator {
             action.check(before_s).map_err(|problem| refuse(at, problem))?;
             before_s = action.at_s();
         }
-        Ok(Self { actions: file.actions })
+        Ok(Self { actions: file.actions, pads_silent: false })
     }
 
     /// The cab at `now`.
     #[must_use]
     pub fn cab(&self, now: SimTime) -> Cab {
-        let mut cab = Cab::default();
+        let mut cab = Cab { pads_silent: self.pads_silent, ..Cab::default() };
         for action in self.actions.iter().take_while(|action| action.at() <= now) {
             action.apply(now.since(action.at()), &mut cab);
         }

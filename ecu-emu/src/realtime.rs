@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ecu_emu::{
-    Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, write_truth_row,
+    Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, Wire, write_truth_row,
 };
 use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Outbox;
@@ -18,6 +18,7 @@ use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
 use crate::serial::Serial;
+use crate::wire_buses::WireBuses;
 
 type Problem = Box<dyn std::error::Error>;
 
@@ -25,6 +26,7 @@ type Problem = Box<dyn std::error::Error>;
 pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     let config = config(args)?;
     let mut bus = SocketCan::open(&args.bus)?;
+    let mut wires = WireBuses::open(&args.wires)?;
     let serial = Serial::open(args.gnss_link.as_deref())
         .map_err(|error| format!("cannot open a pseudo-terminal for the receiver: {error}"))?;
     let mut truth = args.truth.as_deref().map(open_truth).transpose()?;
@@ -50,10 +52,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
             write_truth_row(file, now, emulator.truth())
                 .map_err(|error| format!("{}: {error}", path.display()))?;
         }
+        wires.listen(now, &mut emulator)?;
         emulator.tick(now, &mut out);
         for frame in out.frames() {
             bus.send(now, frame)?;
         }
+        wires.send(now, &emulator)?;
         bytes.clear();
         emulator.take_gnss(&mut bytes);
         if !bytes.is_empty() {
@@ -99,6 +103,11 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     }
     for (name, on) in &args.quirks {
         config.quirks.set(name, *on)?;
+    }
+    let somebody_else =
+        |(wire, _): &(Wire, _)| matches!(wire, Wire::LeftArmrest | Wire::RightArmrest);
+    if args.wires.iter().any(somebody_else) {
+        config.operator = Operator::absent();
     }
     if let Some(path) = &args.operator {
         config.operator = Operator::load(path)?;

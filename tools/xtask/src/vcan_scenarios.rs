@@ -81,6 +81,7 @@ const TESTS: &[Test] = &[
     Test { package: "xt28-bus", test: "socket_can", virtual_time: false },
     // A service tool gives up on an ECU that a loaded machine makes late.
     Test { package: "ecu-emu", test: "service_tool", virtual_time: true },
+    Test { package: "ecu-emu", test: "wires", virtual_time: true },
 ];
 
 /// How many checks [`run_all`] has, each test program counted as one.

@@ -45,6 +45,6 @@ fn the_accumulators_take_the_edge_off_a_kerb() {
     writeln!(io::stderr(), "with {with:.1?}\nwithout {without:.1?}").unwrap();
     // The wheel itself hits the edge with nothing but its tyre; what lies above it is spared. The
     // cylinders are seen through the ECU's 1 Hz filter, which takes its own share of every knock.
-    assert!(with.ground_kn < 0.92 * without.ground_kn, "{with:?} {without:?}");
-    assert!(with.cylinder_kn < 0.95 * without.cylinder_kn, "{with:?} {without:?}");
+    assert!(with.ground_kn < 0.80 * without.ground_kn, "{with:?} {without:?}");
+    assert!(with.cylinder_kn < 0.92 * without.cylinder_kn, "{with:?} {without:?}");
 }

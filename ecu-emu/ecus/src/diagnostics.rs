@@ -45,6 +45,8 @@ pub const FLOW_LIMITS: FlowLimits =
 const STREAMS_DUE: Duration = Duration::from_millis(500);
 /// Longest request, bytes: eight identifiers, and room.
 const REQUEST_MAX: usize = 64;
+/// A tester's word that it is still there, and wants no answer: taken also while one is under way.
+const STILL_THERE: [u8; 2] = [0x3E, 0x80];
 /// ISO-TP frames that may leave in one task period, so that a long response leaves room for others.
 const FRAMES_PER_TICK: usize = 8;
 
@@ -138,7 +140,8 @@ impl<R: Readings + Default> Diagnostics<R> {
 
     fn on_physical(&mut self, now: SimTime, data: &[u8]) {
         let busy = self.endpoint.is_sending();
-        let Some(request) = self.endpoint.on_frame(now, data).filter(|_| !busy) else { return };
+        let taken = |request: &&[u8]| !busy || **request == STILL_THERE;
+        let Some(request) = self.endpoint.on_frame(now, data).filter(taken) else { return };
         let known = (&self.readings, &mut self.memory);
         self.server.respond(now, request, Addressing::Physical, known, &mut self.reply);
         self.answer();
@@ -148,7 +151,7 @@ impl<R: Readings + Default> Diagnostics<R> {
     fn on_functional(&mut self, now: SimTime, from: u8, data: &[u8]) {
         let Some((&length @ 1..=7, rest)) = data.split_first() else { return };
         let Some(request) = rest.get(..usize::from(length)) else { return };
-        if self.endpoint.is_sending() {
+        if self.endpoint.is_sending() && request != STILL_THERE {
             return;
         }
         let known = (&self.readings, &mut self.memory);
@@ -167,6 +170,9 @@ impl<R: Readings + Default> Diagnostics<R> {
     /// One task period: `readings` are what may be asked for until the next.
     pub(crate) fn tick(&mut self, now: SimTime, readings: R, out: &mut Outbox) {
         self.readings = readings;
+        if self.endpoint.is_sending() {
+            self.server.keep_up(now);
+        }
         self.server.tick(now);
         self.node.tick(now, &mut self.memory, out);
         let Some(from) = self.node.address() else { return };

@@ -221,6 +221,27 @@ fn a_session_ends_when_nobody_keeps_it_up() {
     assert_eq!(tool.ask(&mut bench, &raw), Some(vec![0x7F, 0x22, 0x31]));
 }
 
+/// 127 ms between frames: the list of all codes takes longer than a session lasts.
+#[test]
+fn a_session_lasts_through_a_slow_answer() {
+    let mut bench = Bench::new();
+    bench.run(2);
+    bench.offer(0x18DA_28F1, &[2, 0x10, 3]);
+    bench.offer(0x18DA_28F1, &[2, 0x19, 0x0A]);
+    assert!(bench.run(3).iter().all(|f| f.id().raw() != 0x18DA_F128 || f.data()[0] != 0x10));
+    bench.offer(0x18DA_28F1, &[2, 0x19, 0x0A]);
+    bench.run(2);
+    bench.offer(0x18DA_28F1, &[0x30, 0, 0x7F]);
+    let frames = bench.run(520);
+    let answers = frames.iter().filter(|f| f.id().raw() == 0x18DA_F128);
+    assert!((35..45).contains(&answers.count()), "still under way after 5.2 s");
+    bench.offer(0x18DB_33F1, &[2, 0x3E, 0x80]);
+    bench.offer(0x18DA_28F1, &[3, 0x22, 0x02, 0x10]);
+    bench.run(250);
+    let raw = Tool::new(ARM).ask(&mut bench, &[0x22, 0x02, 0x10]).unwrap();
+    assert_eq!(raw[0], 0x62, "the session stood");
+}
+
 #[test]
 fn trouble_codes_are_counted_listed_and_cleared() {
     let mut bench = Bench::new();

@@ -104,32 +104,14 @@ impl FaultMemory {
 
     /// All codes in the order of the table.
     pub fn entries(&self) -> impl Iterator<Item = Entry> {
-        let modes =
-            self.parts.iter().flat_map(|part| part.modes.iter().map(move |mode| (part, mode)));
-        modes.zip(&self.records).map(|((part, mode), record)| Entry {
-            code: TroubleCode { spn: part.spn, fmi: mode.fmi },
-            lamp: mode.lamp,
-            status: record.status,
-            occurrences: record.occurrences,
-        })
+        codes(self.parts).zip(&self.records).map(|(code, record)| record.entry(code))
     }
 
     /// Forgets the codes that `which` holds of. What fails on is found again at the next test.
     pub fn clear(&mut self, which: impl Fn(&Entry) -> bool) {
-        let mut slot = 0;
-        for part in self.parts {
-            for mode in part.modes {
-                let record = &mut self.records[slot];
-                let entry = Entry {
-                    code: TroubleCode { spn: part.spn, fmi: mode.fmi },
-                    lamp: mode.lamp,
-                    status: record.status,
-                    occurrences: record.occurrences,
-                };
-                if which(&entry) {
-                    *record = Record { announced: record.announced, is_news: true, ..CLEAN };
-                }
-                slot += 1;
+        for (code, record) in codes(self.parts).zip(&mut self.records) {
+            if which(&record.entry(code)) {
+                *record = Record { announced: record.announced, is_news: true, ..CLEAN };
             }
         }
     }
@@ -164,7 +146,19 @@ impl FaultMemory {
     }
 }
 
+/// Every code of a table with its lamp, in order.
+fn codes(parts: &'static [Part]) -> impl Iterator<Item = (TroubleCode, Lamp)> {
+    let of = |part: &'static Part| {
+        part.modes.iter().map(|mode| (TroubleCode { spn: part.spn, fmi: mode.fmi }, mode.lamp))
+    };
+    parts.iter().flat_map(of)
+}
+
 impl Record {
+    const fn entry(&self, (code, lamp): (TroubleCode, Lamp)) -> Entry {
+        Entry { code, lamp, status: self.status, occurrences: self.occurrences }
+    }
+
     fn test(&mut self, fails: bool) {
         let failed = self.status & status::FAILED != 0;
         self.status &= !UNTESTED;

@@ -90,6 +90,11 @@ impl Server {
         }
     }
 
+    /// A session lasts while its tester is being answered.
+    pub(crate) const fn keep_up(&mut self, now: SimTime) {
+        self.heard = now;
+    }
+
     /// Writes the response to `request` into `reply`; leaves it empty where there is to be none.
     pub(crate) fn respond<R: Readings>(
         &mut self,

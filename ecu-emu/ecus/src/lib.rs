@@ -3,7 +3,8 @@
 //! [`ArmEcu`] ("SMS") controls the pendulum arms, [`DriveEcu`] ("DMS") transmission and steering.
 //! Both know millivolts, hertz, milliamperes and frames only; [`pins`] has the sensors' and
 //! solenoids' laws for those who wire them to something. The numbers come from the machine file,
-//! the laws from the paper and the public firmware.
+//! the laws from the paper and the public firmware. [`firmware_2016`] has both ECUs as that firmware
+//! has them.
 #![forbid(unsafe_code)]
 
 mod arm;

@@ -24,7 +24,7 @@ TOLERANCE = {
     "RefCurrent": 1, "ActCurrent": 1,
 }  # fmt: skip
 # Values that may be off at all, within their tolerance, as a share of all.
-INEXACT_MAX = 0.001
+INEXACT_MAX = 0.005
 TICK_MS = 10
 # What the run must have shown, or the comparison proves little: values seen, and least ranges.
 SEEN = {

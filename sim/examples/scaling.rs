@@ -1,8 +1,8 @@
 //! Independent environments on more and more threads: steps a second, and the efficiency of it.
 //!
 //! Steps a second are by the clock on the wall, so they mean something on an idle machine only. The
-//! processor's time for a step is told as well: where others are busy it still shows whether one
-//! thread's work makes another's dearer.
+//! processor's time for a step and how often a thread gave the processor up of its own accord are
+//! told as well: where others are busy they still show whether threads hinder one another.
 //!
 //! ```sh
 //! cargo run --release -p xt28-sim --example scaling
@@ -33,8 +33,8 @@ fn main() -> Result<(), String> {
     println!(
         "\n{ENVIRONMENTS} environments a thread at {RATE_HZ} Hz on rough ground, {cores} cores\n"
     );
-    println!("| engine | threads | steps/s | efficiency | processor us/step |");
-    println!("|---|---|---|---|---|");
+    println!("| engine | threads | steps/s | efficiency | processor us/step | waits |");
+    println!("|---|---|---|---|---|---|");
     measure::<RapierBodies>("rapier", &ground, cores);
     measure::<ReducedBodies>("reduced", &ground, cores);
     Ok(())
@@ -44,20 +44,23 @@ fn main() -> Result<(), String> {
 fn measure<B: Bodies + Send>(name: &str, ground: &Terrain, cores: usize) {
     let counts = (0..).map(|power| 1 << power).take_while(|&threads| threads <= cores);
     let counts: Vec<usize> = counts.collect();
-    let mut best = vec![Pace { steps_per_s: 0.0, processor_us: f64::MAX }; counts.len()];
+    let mut best = vec![Pace { steps_per_s: 0.0, processor_us: f64::MAX, waits: 0 }; counts.len()];
     // Numbers of threads take turns, so that a busy moment does not meet one of them alone.
     for _ in 0..REPEATS {
         for (best, &threads) in best.iter_mut().zip(&counts) {
             let pace = pace::<B>(ground, threads);
             best.steps_per_s = best.steps_per_s.max(pace.steps_per_s);
             best.processor_us = best.processor_us.min(pace.processor_us);
+            best.waits = best.waits.max(pace.waits);
         }
     }
     for (pace, &threads) in best.iter().zip(&counts) {
-        let Pace { steps_per_s, processor_us } = pace;
+        let Pace { steps_per_s, processor_us, waits } = pace;
         #[allow(clippy::cast_precision_loss)]
         let efficiency = steps_per_s / (best[0].steps_per_s * threads as f64);
-        println!("| {name} | {threads} | {steps_per_s:.0} | {efficiency:.2} | {processor_us:.1} |");
+        println!(
+            "| {name} | {threads} | {steps_per_s:.0} | {efficiency:.2} | {processor_us:.1} | {waits} |"
+        );
     }
 }
 
@@ -68,6 +71,8 @@ struct Pace {
     steps_per_s: f64,
     /// Processor time of a step, mean over the threads, us.
     processor_us: f64,
+    /// Times that all threads together waited for something other than the processor.
+    waits: u64,
 }
 
 #[allow(clippy::cast_precision_loss)]
@@ -84,19 +89,28 @@ fn pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
     let mut groups: Vec<Vec<Vehicle<B>>> =
         (0..threads).map(|_| (0..ENVIRONMENTS).map(|_| settled()).collect()).collect();
     let work = |group: &mut Vec<Vehicle<B>>| {
-        let begun_us = processor_us();
+        let (begun_us, begun_waits) = (processor_us(), waits());
         for _ in 0..STEPS {
             group.iter_mut().for_each(|vehicle| vehicle.step(&drive));
         }
-        processor_us() - begun_us
+        (processor_us() - begun_us, waits() - begun_waits)
     };
     let begun = Instant::now();
-    let took_us: f64 = thread::scope(|scope| {
+    let (took_us, waits) = thread::scope(|scope| {
         let running: Vec<_> = groups.iter_mut().map(|group| scope.spawn(|| work(group))).collect();
-        running.into_iter().map(|thread| thread.join().expect("a step does not panic")).sum()
+        let ended = running.into_iter().map(|thread| thread.join().expect("a step does not panic"));
+        ended.fold((0.0, 0), |sum, (us, waits)| (sum.0 + us, sum.1 + waits))
     });
     let steps = (threads * ENVIRONMENTS * STEPS) as f64;
-    Pace { steps_per_s: steps / begun.elapsed().as_secs_f64(), processor_us: took_us / steps }
+    let steps_per_s = steps / begun.elapsed().as_secs_f64();
+    Pace { steps_per_s, processor_us: took_us / steps, waits }
+}
+
+/// Times that this thread has given the processor up of its own accord; 0 where Linux does not tell.
+fn waits() -> u64 {
+    let status = std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
+    line.and_then(|count| count.trim().parse().ok()).unwrap_or(0)
 }
 
 /// Time that this thread has had of the processor, us.

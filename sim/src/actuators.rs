@@ -72,6 +72,28 @@ impl Actuators {
         }
     }
 
+    /// Takes every block up where `measured` has it, its command having stood for long.
+    pub(crate) fn resume(
+        &mut self,
+        measured: &VehicleState,
+        actuation: &Actuation,
+        motion: &Motion,
+        dt_s: f64,
+    ) {
+        for wheel in Wheel::ALL {
+            let (cylinder, _) = self.cylinder_motion(motion.arm[wheel]);
+            let load_n = measured.cylinder_force_n[wheel];
+            let command = actuation.arm_opening[wheel];
+            let input = ArmInput { command, load_n, motion: cylinder };
+            self.arm_states[wheel] = self.arms[wheel].resumed(&input, dt_s);
+        }
+        for (i, joint) in self.joints.iter_mut().enumerate() {
+            *joint = self.steering.resumed(actuation.steer_opening[i], motion.joint[i], dt_s);
+        }
+        let input = drive_input(actuation, motion);
+        self.shaft = self.drive.resumed(&input, &measured.wheel_torque_nm, dt_s);
+    }
+
     /// Steps every block over `dt_s` s; what the drive does is noted in `state`.
     pub(crate) fn step(
         &mut self,
@@ -193,13 +215,7 @@ impl Actuators {
     }
 
     fn drive_wheels(&mut self, actuation: &Actuation, motion: &Motion, dt_s: f64) -> DriveOutput {
-        let input = DriveInput {
-            pump_displacement: actuation.pump_displacement,
-            motor_displacement: actuation.motor_displacement,
-            engine_speed_rpm: actuation.engine_speed_rpm,
-            wheel_speed_rad_s: motion.wheel_rate_rad_s,
-        };
-        self.drive.step(&mut self.shaft, &input, dt_s)
+        self.drive.step(&mut self.shaft, &drive_input(actuation, motion), dt_s)
     }
 
     fn rolling_drag_nm(&self, motion: &Motion) -> PerWheel<f64> {
@@ -208,5 +224,14 @@ impl Actuators {
             let fade = (motion.wheel_rate_rad_s[wheel] / DRAG_FADE_RAD_S).tanh();
             -self.rolling_resistance_m[wheel] * normal_n * fade
         })
+    }
+}
+
+fn drive_input(actuation: &Actuation, motion: &Motion) -> DriveInput {
+    DriveInput {
+        pump_displacement: actuation.pump_displacement,
+        motor_displacement: actuation.motor_displacement,
+        engine_speed_rpm: actuation.engine_speed_rpm,
+        wheel_speed_rad_s: motion.wheel_rate_rad_s,
     }
 }

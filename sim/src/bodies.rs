@@ -19,6 +19,15 @@ pub trait Bodies: Clone {
     fn advance(&mut self, loads: &Loads, dt_s: f64);
 }
 
+/// A solver that can be put where a measurement has the machine.
+///
+/// Of its own: a solver without it cannot be resumed from a measurement, and that shows in the types.
+pub trait Placed: Bodies {
+    /// Puts every part where `motion` has it, moving as it does; forces in it are not looked at, and
+    /// what contacts remember stays.
+    fn place(&mut self, motion: &Motion);
+}
+
 /// Angle and rate of a hinge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HingeMotion {

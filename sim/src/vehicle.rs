@@ -1,5 +1,7 @@
 //! The whole vehicle: the actuators' blocks joined to a solver of the rigid bodies.
 
+mod resume;
+
 use core::time::Duration;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};

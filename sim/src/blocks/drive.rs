@@ -104,6 +104,26 @@ impl Drive {
         DriveState { asked_rad_s: [line.clone(), line], ..DriveState::default() }
     }
 
+    /// A transmission taken up in the middle of what was measured: the throttle has stood for long, and
+    /// what holds the mean speed is what the speeds do not explain of the torques.
+    #[must_use]
+    pub fn resumed(&self, input: &DriveInput, torque_nm: &PerWheel<f64>, dt_s: f64) -> DriveState {
+        let delay_s = self.effects.throttle_delay.delay_s;
+        let targets = [0, 1].map(|c| self.target_rad_s(c, input));
+        let held_nm = [0, 1].map(|c| {
+            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
+            circuit_nm - self.circuit_gain_nms * (targets[c] - self.mean_rad_s(c, input))
+        });
+        let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
+        DriveState {
+            asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
+            target_rad_s: targets.map(Lag::new),
+            felt_power_w: Lag::new(power_w),
+            power_w,
+            mean_torque_nm: (held_nm[0] + held_nm[1]) / 2.0,
+        }
+    }
+
     /// Torques and pressures now; the state goes on by `dt_s` s.
     pub fn step(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> DriveOutput {
         let droop = &self.effects.engine_droop;

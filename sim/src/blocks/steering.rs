@@ -63,6 +63,20 @@ impl Steering {
         SteeringState { commands, ..SteeringState::default() }
     }
 
+    /// A joint taken up in the middle of what was measured: its valve has stood at `opening` for long,
+    /// its oil leads as far as the damping of this motion asks. What the tyres scrub is not known.
+    #[must_use]
+    pub fn resumed(&self, opening: f64, joint: HingeMotion, dt_s: f64) -> SteeringState {
+        let opening = opening.clamp(-1.0, 1.0);
+        let leads_rad = joint.rate_rad_s * self.damping_nms / self.stiffness_nm;
+        SteeringState {
+            commands: DelayLine::new(self.effects.delay.delay_s, dt_s, opening),
+            spool: Lag::new(opening),
+            oil_rad: joint.angle_rad + leads_rad,
+            rest_rad: joint.angle_rad + leads_rad,
+        }
+    }
+
     /// First half of a step: moves the spool; gives the rate that it asks of the joint, rad/s.
     pub fn open(&self, state: &mut SteeringState, opening: f64, dt_s: f64) -> f64 {
         let e = &self.effects;

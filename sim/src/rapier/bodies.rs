@@ -10,7 +10,7 @@ use super::hull_watch::HullWatch;
 use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
 use super::shapes::Ground;
 use super::tyre_contact::{Rim, TyreContact};
-use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
+use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
 /// Index of a hinge's own angle among a joint's six coordinates.
@@ -85,7 +85,7 @@ impl Bodies for RapierBodies {
         };
         bodies.free_root();
         bodies.index_hinges(turned, parts.roll_hinge);
-        bodies.place(parts, terrain, stroke_m);
+        bodies.set_down(parts, terrain, stroke_m);
         bodies
     }
 
@@ -125,6 +125,44 @@ impl Bodies for RapierBodies {
             push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
         };
         self.chassis_force_n = self.hulls.iter().map(push_n).sum();
+    }
+}
+
+impl Placed for RapierBodies {
+    #[allow(clippy::cast_possible_truncation)]
+    fn place(&mut self, motion: &Motion) {
+        let [forward, left, up] = motion.axes.map(vector);
+        let turn = Rotation::from_mat3(&Matrix::from_cols(forward, left, up)).normalize();
+        let com = vector(motion.position_m) + turn * self.front_com;
+        let mut velocity = vec![0.0; self.multibody().ndofs()];
+        let mut move_by = velocity.clone();
+        velocity[..3].copy_from_slice(&motion.velocity_m_s.map(|v| v as Real));
+        velocity[3..6].copy_from_slice(&motion.rate_rad_s.map(|v| v as Real));
+        let mut hinge = |hinge: Hinge, now: HingeMotion, sign: f64| {
+            let to = signed(now, sign);
+            move_by[hinge.dof] = to.angle_rad as Real;
+            velocity[hinge.dof] = to.rate_rad_s as Real;
+        };
+        for (i, joint) in self.joints.into_iter().enumerate() {
+            hinge(joint, motion.joint[i], -1.0);
+        }
+        for wheel in Wheel::ALL {
+            hinge(self.arm_hinges[wheel], motion.arm[wheel], self.extends[wheel]);
+            // How far a wheel has turned changes nothing.
+            let rate_rad_s = motion.wheel_rate_rad_s[wheel];
+            let angle_rad = self.hinge_motion(self.wheel_hinges[wheel]).angle_rad;
+            hinge(self.wheel_hinges[wheel], HingeMotion { angle_rad, rate_rad_s }, 1.0);
+        }
+        for link in self.multibody().links().skip(1) {
+            move_by[link.assembly_id()] -= link.joint().coords()[HINGE];
+        }
+        self.world.bodies[self.frames[0]].set_position(Pose::from_parts(com, turn), false);
+        let world = &mut self.world;
+        let multibody = multibody_of(&mut world.multibody_joints, self.frames[0]);
+        multibody.apply_displacements(&move_by);
+        multibody.generalized_velocity_mut().copy_from_slice(&velocity);
+        multibody.forward_kinematics(&world.bodies, true);
+        multibody.update_rigid_bodies(&mut world.bodies, true);
     }
 }
 
@@ -282,7 +320,7 @@ impl RapierBodies {
 
     /// Swings the arms to their strokes and sets the machine down on the ground under its wheels.
     #[allow(clippy::cast_possible_truncation)]
-    fn place(&mut self, parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) {
+    fn set_down(&mut self, parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) {
         let mut move_by = vec![0.0; self.multibody().ndofs()];
         for wheel in Wheel::ALL {
             let angle = self.extends[wheel] * parts.arm_angle_rad(stroke_m[wheel]);

@@ -1,0 +1,32 @@
+//! How far a vehicle resumed from its own state drifts from the true snapshot, as a table.
+//!
+//! `cargo run --release -p xt28-sim --example resume`
+#![allow(clippy::disallowed_macros)] // a binary prints
+
+mod drift;
+
+use core::time::Duration;
+
+use drift::Drift;
+
+fn main() {
+    println!("driving over a ramp in a bend, arms moving; largest distance from the snapshot");
+    println!(
+        "at s  warm ms  after s  stroke mm  roll/pitch mrad  position mm  joint mrad  wheel mrad/s"
+    );
+    for at_s in [6.0, 10.0, 14.0] {
+        for warm_ms in [0, 50, 200] {
+            let drift = Drift::of(at_s, Duration::from_millis(warm_ms));
+            for (after_s, d) in [(1, drift.after_1_s), (5, drift.after_5_s)] {
+                println!(
+                    "{at_s:4}  {warm_ms:7}  {after_s:7}  {:9.2}  {:15.2}  {:11.1}  {:10.2}  {:12.1}",
+                    d.stroke_m * 1e3,
+                    d.attitude_rad * 1e3,
+                    d.position_m * 1e3,
+                    d.joint_rad * 1e3,
+                    d.wheel_rad_s * 1e3,
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! A vehicle resumed from its own state against the snapshot that it is of.
+
+#[path = "../examples/resume/drift.rs"]
+mod drift;
+
+use core::time::Duration;
+
+use drift::{Drift, drive};
+use xt28_machine::{Machine, PerWheel};
+use xt28_sim::{Actuation, Effects, Plant, RapierBodies, STEP, Terrain, Vehicle};
+
+/// A placed machine shows the state that it was placed at.
+#[test]
+fn what_is_resumed_shows_what_was_measured() {
+    let (vehicle, terrain) = drive(10.0);
+    let measured = *vehicle.state();
+    let resumed = Drift::resumed(&measured, &terrain, 10.0, Duration::from_millis(50));
+    let s = resumed.state();
+    for (ours, theirs, bound) in [
+        (s.position_m[0], measured.position_m[0], 1e-5),
+        (s.position_m[2], measured.position_m[2], 1e-5),
+        (s.roll_rad, measured.roll_rad, 1e-5),
+        (s.pitch_rad, measured.pitch_rad, 1e-5),
+        (s.yaw_rad, measured.yaw_rad, 1e-5),
+        (s.joint_rad[0], measured.joint_rad[0], 1e-6),
+        (s.antenna_velocity_m_s[0], measured.antenna_velocity_m_s[0], 1e-4),
+        (s.antenna_velocity_m_s[2], measured.antenna_velocity_m_s[2], 1e-4),
+        (s.stroke_m.mean(), measured.stroke_m.mean(), 1e-6),
+        (s.cylinder_force_n.mean(), measured.cylinder_force_n.mean(), 5.0),
+        (s.wheel_speed_rad_s.mean(), measured.wheel_speed_rad_s.mean(), 1e-6),
+    ] {
+        assert!((ours - theirs).abs() < bound, "{ours}, not {theirs}");
+    }
+}
+
+/// The drift that the documentation of `from_measured` and the example's table say.
+#[test]
+fn a_resumed_vehicle_stays_near_the_snapshot() {
+    for at_s in [6.0, 10.0, 14.0] {
+        let drift = Drift::of(at_s, Duration::from_millis(50));
+        let [one, five] = [drift.after_1_s, drift.after_5_s];
+        assert!(one.stroke_m < 1e-3 && five.stroke_m < 1e-3, "{at_s} s: {drift:?}");
+        assert!(one.attitude_rad < 1.2e-3 && five.attitude_rad < 1.2e-3, "{at_s} s: {drift:?}");
+        assert!(one.position_m < 0.012 && five.position_m < 0.03, "{at_s} s: {drift:?}");
+        // What the tyres scrub at the joints no sensor shows.
+        assert!(one.joint_rad < 0.012 && five.joint_rad < 0.012, "{at_s} s: {drift:?}");
+    }
+}
+
+/// In free fall nothing pushes: the front frame's centre of mass goes on as a stone does, however the
+/// machine spins. (What a root's origin beside its centre of mass would break.)
+#[test]
+fn a_spinning_machine_falls_like_a_stone() {
+    let (machine, terrain) = (Machine::xt28(), Terrain::Flat);
+    let mut vehicle: Vehicle<RapierBodies> =
+        Vehicle::with(&machine, &Effects::default(), &terrain, PerWheel::splat(0.17), STEP);
+    (0..400).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
+    let mut thrown = *vehicle.state();
+    thrown.position_m[2] += 30.0;
+    thrown.front_rate_rad_s = [0.6, -0.4, 0.3];
+    let actuation = Actuation::idle(1200.0);
+    let mut vehicle: Vehicle<RapierBodies> = Vehicle::from_measured(
+        &machine,
+        &Effects::default(),
+        &terrain,
+        STEP,
+        &thrown,
+        &actuation,
+        Duration::ZERO,
+    );
+    // Frames, arms and wheels move against one another a little, so the front frame's centre of mass
+    // is the whole machine's only within that.
+    let com_m = |v: &Vehicle<RapierBodies>| {
+        let s = v.state();
+        let [x, _, z] = machine.frames.front_com_m;
+        let ((sp, cp), (_, cr)) = (s.pitch_rad.sin_cos(), s.roll_rad.sin_cos());
+        s.position_m[2] + x * sp + z * cr * cp
+    };
+    let start = com_m(&vehicle);
+    for _ in 0..300 {
+        vehicle.step(&actuation);
+    }
+    let (end, t) = (com_m(&vehicle), 1.5);
+    let fallen_m = start - end;
+    assert!((fallen_m - 0.5 * 9.81 * t * t).abs() < 0.35, "{fallen_m} m");
+}

@@ -24,9 +24,10 @@ impl PassesStates {
         passed.dedup();
         // How far the run goes along, so that a figure says where it left the way.
         let along = passed.iter().zip(&self.states).take_while(|(is, be)| is == be).count();
-        let surplus = passed.len().saturating_sub(self.states.len());
+        let all = along == self.states.len();
         #[allow(clippy::cast_precision_loss)] // a handful
-        let [found, wanted] = [along + surplus, self.states.len()].map(|n| n as f64);
+        let [found, wanted] =
+            [if all { passed.len() } else { along }, self.states.len()].map(|n| n as f64);
         let what = format!("states that the {} passes in order", self.ecu.name());
         let note = passed.into_iter().map(words).collect::<Vec<_>>().join(", ");
         let wanted = Bound::Near { value: wanted, tolerance: 0.0 };

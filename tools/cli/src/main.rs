@@ -6,6 +6,7 @@
 mod artefacts;
 mod config;
 mod effects;
+mod gap;
 mod pace;
 #[cfg(target_os = "linux")]
 mod processes;
@@ -35,6 +36,7 @@ struct Cli {
 enum Command {
     Run(run::Run),
     Replay(replay::Replay),
+    Gap(gap::Gap),
     Scenarios(scenarios::Scenarios),
     Effects(effects::Effects),
     Config(config::Config),
@@ -57,6 +59,7 @@ fn main() -> ExitCode {
         None => run::Run::demo().execute(),
         Some(Command::Run(run)) => run.execute(),
         Some(Command::Replay(replay)) => replay.execute(),
+        Some(Command::Gap(gap)) => gap.execute(),
         Some(Command::Scenarios(scenarios)) => scenarios.execute(),
         Some(Command::Effects(effects)) => effects.execute(),
         Some(Command::Config(config)) => config.execute(),

@@ -43,6 +43,8 @@ pub enum Channel {
     East,
     /// GNSS antenna, north.
     North,
+    /// Heading that the receiver says, counter-clockwise from east, 0 to one turn.
+    Heading,
     /// Commanded: stroke.
     TargetStroke(Wheel),
     /// Commanded: mode of the arms, 0 off to 3 manual valve.
@@ -129,7 +131,14 @@ impl Channel {
         all.extend(PumpSide::ALL.map(Self::PumpCurrent));
         all.extend(SteerSide::ALL.map(Self::SteerCurrent));
         all.extend([Self::FrontJoint, Self::RearJoint, Self::Roll, Self::Pitch]);
-        all.extend([Self::East, Self::North, Self::ArmMode, Self::Throttle, Self::TargetJoint]);
+        all.extend([
+            Self::East,
+            Self::North,
+            Self::Heading,
+            Self::ArmMode,
+            Self::Throttle,
+            Self::TargetJoint,
+        ]);
         all.extend([Self::TargetEngineSpeed, Self::Brake, Self::Enable]);
         all
     }
@@ -154,9 +163,12 @@ impl Channel {
             | Self::PumpCurrent(_)
             | Self::SteerCurrent(_) => Dimension::Current,
             Self::WheelSpeed(_) | Self::TargetEngineSpeed => Dimension::AngularSpeed,
-            Self::FrontJoint | Self::RearJoint | Self::Roll | Self::Pitch | Self::TargetJoint => {
-                Dimension::Angle
-            }
+            Self::FrontJoint
+            | Self::RearJoint
+            | Self::Roll
+            | Self::Pitch
+            | Self::Heading
+            | Self::TargetJoint => Dimension::Angle,
             Self::TargetOpening(_) | Self::Throttle => Dimension::Ratio,
             Self::ArmMode | Self::Brake | Self::Enable => Dimension::Plain,
         }
@@ -219,6 +231,7 @@ impl fmt::Display for Channel {
             Self::SteerCurrent(side) => ("steer_current", side.name()),
             Self::East => ("position", "east"),
             Self::North => ("position", "north"),
+            Self::Heading => ("position", "heading"),
             Self::TargetStroke(w) => ("target_stroke", w.name()),
             Self::ArmMode => ("target", "arm_mode"),
             Self::TargetOpening(w) => ("target_opening", w.name()),

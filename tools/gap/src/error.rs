@@ -100,6 +100,16 @@ pub enum GapError {
         /// What is wrong with it.
         problem: String,
     },
+    /// The log lacks what diagnosis drives the blocks with.
+    #[error(
+        "{log}: diagnosis needs {channels}, and the log has none; say with --mapping what they are called"
+    )]
+    Unmeasured {
+        /// Name of the log.
+        log: String,
+        /// Names of the channels.
+        channels: String,
+    },
 }
 
 impl GapError {

@@ -17,6 +17,7 @@ mod channel;
 mod commands;
 mod comparison;
 mod decoder;
+pub mod diagnosis;
 mod dimension;
 mod ecu_watch;
 mod error;

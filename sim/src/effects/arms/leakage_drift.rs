@@ -27,7 +27,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     parameters: &[Parameter {
         name: "rate_m_s",
         neutral: 0.0,
-        tolerance: 0.002,
+        tolerance: 5.0e-4,
         range: [0.0, 0.05],
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].leakage.rate_m_s),
     }],

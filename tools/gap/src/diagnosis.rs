@@ -1,0 +1,27 @@
+//! Where a machine's logs part from the simulator: each block on measured inputs, so that an error
+//! stays where it arises.
+//!
+//! | Step | Where |
+//! |---|---|
+//! | the log on one clock | [`Signals`] |
+//! | each block driven with what was measured | [`Generator`], its [`Residual`]s in units of a floor |
+//! | what ordinary tolerances explain | [`Knob`]s, all at once, in [`Evidence`] |
+//! | what an effect would explain beyond that | [`Hypothesis`] |
+
+mod arms;
+mod controllers;
+mod driving;
+mod evidence;
+mod generator;
+mod hypothesis;
+mod joints;
+mod knob;
+mod signals;
+mod stance;
+mod travel;
+
+pub use evidence::Evidence;
+pub use generator::{Floor, Generator, Residual, Signal};
+pub use hypothesis::{Fit, Hypothesis};
+pub use knob::{Knob, TOLERANCES, Tolerance};
+pub use signals::{DT_S, Samples, Signals};

@@ -1,0 +1,238 @@
+//! Residual generators: each drives one block with measured inputs and says where it parts from the log.
+
+use core::fmt;
+
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::Effects;
+use xt28_sim::effects::{Block, Effect, Scope};
+
+use super::signals::{Samples, Signals};
+use super::{arms, controllers, driving, joints, stance, travel};
+
+/// Samples of a log that make one sample of a residual: residuals come ten times a second.
+const STRIDE: usize = 10;
+
+/// One residual generator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Generator {
+    /// Opening and load to stroke, one arm.
+    ArmStroke(Wheel),
+    /// Command and stroke to opening, one arm.
+    ArmEcu(Wheel),
+    /// Opening to angle, front (0) or rear (1) joint.
+    Joint(usize),
+    /// Command and angle to opening, front (0) or rear (1) joint.
+    SteerEcu(usize),
+    /// Throttle to mean wheel speed and pressure.
+    Drive,
+    /// Strokes and loads to attitude and weight.
+    Stance,
+    /// Wheel speeds and joints to one another and to the receiver's fixes.
+    Travel,
+}
+
+/// One residual: what a block predicts less what was measured, in units of its floor.
+#[derive(Clone, Debug)]
+pub struct Residual {
+    /// Who made it.
+    pub generator: Generator,
+    /// Which of its signals.
+    pub signal: Signal,
+    /// Ten samples a second; `NaN` where nothing can be said.
+    pub values: Samples,
+}
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum Signal {
+    Stroke,
+    ArmOpening,
+    JointAngle,
+    SteerOpening,
+    DriveSpeed,
+    DrivePressure,
+    Roll,
+    Pitch,
+    Weight,
+    WeightX,
+    WeightY,
+    WheelSpeed(Wheel),
+    TravelSpeed,
+    TravelCourse,
+}
+
+/// What separates two models of one clean machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Floor {
+    /// Standard deviation, SI.
+    pub sigma: f64,
+    /// Time after which it is drawn anew, s.
+    pub correlation_s: f64,
+}
+
+impl Signal {
+    /// How far two independent models of the nominal machine lie apart (measured on the logs of a
+    /// second plant without effects; see docs/diagnosis.md).
+    #[must_use]
+    pub const fn floor(self) -> Floor {
+        let (sigma, correlation_s) = match self {
+            Self::Stroke => (0.35e-3, 0.25),
+            Self::ArmOpening => (1.5e-3, 0.5),
+            Self::JointAngle => (0.0065, 1.0),
+            Self::SteerOpening => (0.004, 0.5),
+            Self::DriveSpeed => (0.025, 0.5),
+            Self::DrivePressure => (8.0e5, 0.6),
+            Self::Roll => (0.002, 2.0),
+            Self::Pitch => (0.001, 2.0),
+            Self::Weight => (2.2e3, 1.5),
+            Self::WeightX => (0.02, 4.0),
+            Self::WeightY => (0.015, 3.0),
+            Self::WheelSpeed(_) => (0.05, 2.0),
+            Self::TravelSpeed => (0.012, 1.5),
+            Self::TravelCourse => (0.03, 1.5),
+        };
+        Floor { sigma, correlation_s }
+    }
+
+    /// Weight of one squared residual sample: correlated samples count once.
+    #[must_use]
+    pub fn weight(self) -> f64 {
+        let floor = self.floor();
+        1.0 / (floor.correlation_s * 10.0).max(1.0)
+    }
+}
+
+impl Generator {
+    /// All there are.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        all.extend(Wheel::ALL.map(Self::ArmStroke));
+        all.extend(Wheel::ALL.map(Self::ArmEcu));
+        all.extend([Self::Joint(0), Self::Joint(1), Self::SteerEcu(0), Self::SteerEcu(1)]);
+        all.extend([Self::Drive, Self::Stance, Self::Travel]);
+        all
+    }
+
+    /// Whether it can tell anything of an effect, at a scope.
+    #[must_use]
+    pub fn hears(self, effect: &Effect, scope: Scope) -> bool {
+        let name = effect.name;
+        match self {
+            Self::ArmStroke(w) => {
+                let here = !effect.has_scope() || scope.contains(w);
+                let arms = effect.block == Block::Arms && name != "arm-gain";
+                here && (arms || name.starts_with("stroke-") || name.starts_with("pressure-"))
+            }
+            Self::ArmEcu(w) => name == "arm-gain" && scope.contains(w),
+            Self::SteerEcu(joint) => {
+                name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
+            }
+            Self::Joint(_) => {
+                effect.block == Block::Steering && !Self::SteerEcu(1).hears(effect, scope)
+            }
+            Self::Drive => {
+                (effect.block == Block::Drive && name != "slippery-ground")
+                    || matches!(name, "payload" | "terrain-slope")
+            }
+            Self::Stance => {
+                matches!(effect.block, Block::Payload | Block::Ground | Block::Tyre)
+                    || ["stroke-bias", "stroke-scale", "imu-offset"].contains(&name)
+                    || name.starts_with("pressure-")
+            }
+            Self::Travel => {
+                ["slippery-ground", "wheel-speed-scale"].contains(&name)
+                    || name.starts_with("gnss-")
+            }
+        }
+    }
+
+    /// The block it watches.
+    #[must_use]
+    pub const fn block(self) -> Block {
+        match self {
+            Self::ArmStroke(_) | Self::ArmEcu(_) => Block::Arms,
+            Self::Joint(_) | Self::SteerEcu(_) => Block::Steering,
+            Self::Drive | Self::Travel => Block::Drive,
+            Self::Stance => Block::Payload,
+        }
+    }
+
+    /// Its residuals on one run, in units of their floors.
+    #[must_use]
+    pub fn residuals(self, s: &Signals, machine: &Machine, effects: &Effects) -> Vec<Residual> {
+        let one = |signal: Signal, raw: Samples| Residual {
+            generator: self,
+            signal,
+            values: thin(&raw, signal.floor().sigma),
+        };
+        match self {
+            Self::ArmStroke(w) => {
+                vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, effects, w))]
+            }
+            Self::ArmEcu(w) => {
+                let error = controllers::arm_opening_error(s, machine, effects, w);
+                vec![one(Signal::ArmOpening, error)]
+            }
+            Self::Joint(j) => {
+                vec![one(Signal::JointAngle, joints::joint_error_rad(s, machine, effects, j))]
+            }
+            Self::SteerEcu(j) => {
+                let error = controllers::steer_opening_error(s, machine, effects, j);
+                vec![one(Signal::SteerOpening, error)]
+            }
+            Self::Drive => {
+                let errors = driving::drive_errors(s, machine, effects);
+                vec![
+                    one(Signal::DriveSpeed, errors.speed_rad_s),
+                    one(Signal::DrivePressure, errors.pressure_pa),
+                ]
+            }
+            Self::Stance => {
+                let e = stance::stance_errors(s, machine, effects);
+                vec![
+                    one(Signal::Roll, e.roll_rad),
+                    one(Signal::Pitch, e.pitch_rad),
+                    one(Signal::Weight, e.weight_n),
+                    one(Signal::WeightX, e.weight_x_m),
+                    one(Signal::WeightY, e.weight_y_m),
+                ]
+            }
+            Self::Travel => {
+                let e = travel::travel_errors(s, machine, effects);
+                let mut all = vec![one(Signal::TravelSpeed, e.speed_m_s)];
+                all.push(one(Signal::TravelCourse, e.course_rad));
+                all.extend(
+                    e.wheel_rad_s
+                        .0
+                        .into_iter()
+                        .zip(Wheel::ALL)
+                        .map(|(raw, w)| one(Signal::WheelSpeed(w), raw)),
+                );
+                all
+            }
+        }
+    }
+}
+
+/// Means of ten samples, over the floor; `NaN` where one of them is.
+#[allow(clippy::cast_precision_loss)]
+fn thin(raw: &Samples, sigma: f64) -> Samples {
+    raw.chunks_exact(STRIDE).map(|c| c.iter().sum::<f64>() / (STRIDE as f64 * sigma)).collect()
+}
+
+impl fmt::Display for Generator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const JOINT: [&str; 2] = ["front", "rear"];
+        match self {
+            Self::ArmStroke(w) => write!(f, "arm {w}"),
+            Self::ArmEcu(w) => write!(f, "arm controller {w}"),
+            Self::Joint(j) => write!(f, "joint {}", JOINT[*j]),
+            Self::SteerEcu(j) => write!(f, "steering controller {}", JOINT[*j]),
+            Self::Drive => f.write_str("drive"),
+            Self::Stance => f.write_str("stance"),
+            Self::Travel => f.write_str("travel"),
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! What inference may turn: every parameter of every effect, and the machine's own tolerances.
+
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::Effects;
+use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope, Slot};
+
+/// One number that may be other than one believes.
+#[derive(Clone, Copy, Debug)]
+pub enum Knob {
+    /// A parameter of an effect, on the wheels of a scope.
+    Effect(&'static Effect, &'static Parameter, Scope),
+    /// A number of the machine file, scaled.
+    Machine(&'static Tolerance),
+}
+
+/// A number of the machine file that differs from machine to machine without being an effect.
+#[derive(Debug)]
+pub struct Tolerance {
+    /// What it is.
+    pub name: &'static str,
+    /// Standard deviation of its factor.
+    pub sigma: f64,
+    /// Scales it.
+    apply: fn(&mut Machine, f64),
+}
+
+/// The tolerances that the diagnosis allows for (assumed: 3 % of masses, 5 % of what is looked up).
+pub static TOLERANCES: &[Tolerance] = &[
+    Tolerance { name: "front mass", sigma: 0.03, apply: |m, f| m.masses.front_frame_kg *= f },
+    Tolerance { name: "middle mass", sigma: 0.03, apply: |m, f| m.masses.middle_frame_kg *= f },
+    Tolerance { name: "rear mass", sigma: 0.03, apply: |m, f| m.masses.rear_frame_kg *= f },
+    Tolerance {
+        name: "lock stiffness",
+        sigma: 0.05,
+        apply: |m, f| m.hydraulics.lock_stiffness_n_m *= f,
+    },
+    Tolerance {
+        name: "joint stiffness",
+        sigma: 0.05,
+        apply: |m, f| m.vehicle.joint_stiffness_nm *= f,
+    },
+    Tolerance {
+        name: "joint damping",
+        sigma: 0.05,
+        apply: |m, f| m.vehicle.joint_damping_nms *= f,
+    },
+    Tolerance { name: "drive gain", sigma: 0.05, apply: |m, f| m.vehicle.circuit_gain_nms *= f },
+    Tolerance {
+        name: "drive integral",
+        sigma: 0.05,
+        apply: |m, f| m.vehicle.mean_integral_nm *= f,
+    },
+    Tolerance {
+        name: "drive time constant",
+        sigma: 0.1,
+        apply: |m, f| m.drive.speed_time_constant_s *= f,
+    },
+];
+
+impl Knob {
+    /// All that may be turned at once: scoped effects wheel by wheel, the others once.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for effect in CATALOGUE {
+            for parameter in effect.parameters {
+                match parameter.slot {
+                    Slot::PerWheel(_) => all.extend(
+                        Wheel::ALL.map(|w| Self::Effect(effect, parameter, Scope::Wheel(w))),
+                    ),
+                    Slot::Whole(_) => all.push(Self::Effect(effect, parameter, Scope::All)),
+                }
+            }
+        }
+        all.extend(Self::tolerances());
+        all
+    }
+
+    /// What differs from machine to machine, and no effect.
+    #[must_use]
+    pub fn tolerances() -> Vec<Self> {
+        TOLERANCES.iter().map(Self::Machine).collect()
+    }
+
+    /// Value at which it changes nothing.
+    #[must_use]
+    pub const fn neutral(&self) -> f64 {
+        match self {
+            Self::Effect(_, parameter, _) => parameter.neutral,
+            Self::Machine(_) => 1.0,
+        }
+    }
+
+    /// Standard deviation that one believes before seeing data.
+    #[must_use]
+    pub const fn tolerance(&self) -> f64 {
+        match self {
+            Self::Effect(_, parameter, _) => parameter.tolerance,
+            Self::Machine(tolerance) => tolerance.sigma,
+        }
+    }
+
+    /// Sets it.
+    pub fn set(&self, machine: &mut Machine, effects: &mut Effects, value: f64) {
+        match self {
+            Self::Effect(_, parameter, scope) => parameter.set(effects, *scope, value),
+            Self::Machine(tolerance) => (tolerance.apply)(machine, value),
+        }
+    }
+}

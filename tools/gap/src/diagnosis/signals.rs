@@ -1,0 +1,287 @@
+//! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use xt28_ecus::pins;
+use xt28_machine::{PerWheel, Wheel};
+use xt28_sim::Terrain;
+
+use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
+
+/// Time series by channel, as logs and replays have them.
+type AllSeries = BTreeMap<Channel, Series>;
+
+/// Time between two samples, s: the ECUs' own period.
+pub const DT_S: f64 = 0.01;
+
+/// Samples of one channel on the common clock; SI.
+pub type Samples = Vec<f64>;
+
+/// One run, ready for diagnosis. Where a channel is missing its samples are empty.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    /// Name of the log.
+    pub name: String,
+    /// The ground it was driven on, as far as one knows.
+    pub terrain: Terrain,
+    /// Number of samples.
+    pub len: usize,
+    /// Stroke commanded.
+    pub target_stroke_m: PerWheel<Samples>,
+    /// Mode of the arms commanded, 0 to 3.
+    pub arm_mode: Samples,
+    /// Opening that the ECU's currents ask of each arm valve, -1 to 1.
+    pub opening: PerWheel<Samples>,
+    /// Strokes as read: whole millimetres, cut off.
+    pub stroke_reading_m: PerWheel<Samples>,
+    /// Strokes as they were between two readings.
+    pub stroke_m: PerWheel<Samples>,
+    /// Stroke rates: slope of the reading over 0.2 s.
+    pub stroke_rate_m_s: PerWheel<Samples>,
+    /// Loads of the cylinders, from their pressures.
+    pub cylinder_load_n: PerWheel<Samples>,
+    /// Wheel speeds, forward > 0.
+    pub wheel_speed_rad_s: PerWheel<Samples>,
+    /// Opening that the ECU's currents ask of the front and the rear steering valve.
+    pub steer_opening: [Samples; 2],
+    /// Front and rear joint, left > 0.
+    pub joint_rad: [Samples; 2],
+    /// Front joint commanded.
+    pub target_joint_rad: Samples,
+    /// Throttle commanded, -1 to 1.
+    pub throttle: Samples,
+    /// Pump pressures 1A 1B 2A 2B.
+    pub pump_pressure_pa: [Samples; 4],
+    /// Roll of the front frame, right side high > 0.
+    pub roll_rad: Samples,
+    /// Pitch of the front frame, nose up > 0.
+    pub pitch_rad: Samples,
+    /// Antenna, east and north, with the instants of its fixes: s, m, m.
+    pub fixes: Vec<[f64; 3]>,
+    /// Heading with its rate at those instants: rad, unwound, counter-clockwise from east; rad/s.
+    pub headings: Vec<[f64; 2]>,
+}
+
+impl Signals {
+    /// The channels of `log`, sampled from its start to its end.
+    ///
+    /// # Errors
+    /// [`GapError::Unmeasured`] names the channels that the log has not.
+    pub fn new(log: &FieldLog, terrain: Terrain) -> Result<Self, GapError> {
+        Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)
+    }
+
+    /// `series` sampled for `duration_s` s, under the name of `name`.
+    ///
+    /// # Errors
+    /// [`GapError::Unmeasured`] names the channels that are not there.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub fn of_series(
+        name: &str,
+        series: &AllSeries,
+        duration_s: f64,
+        terrain: Terrain,
+    ) -> Result<Self, GapError> {
+        let missing: Vec<String> = needed()
+            .filter(|channel| series.get(channel).is_none_or(Series::is_empty))
+            .map(|channel| channel.to_string())
+            .collect();
+        if !missing.is_empty() {
+            let channels = missing.join(", ");
+            return Err(GapError::Unmeasured { log: name.to_owned(), channels });
+        }
+        let len = (duration_s / DT_S) as usize;
+        let sample = |channel| held(series.get(&channel), len);
+        let wheels = |make: fn(Wheel) -> Channel| PerWheel::from_fn(|wheel| sample(make(wheel)));
+        let (a, b) = (wheels(Channel::RetractCurrent), wheels(Channel::ExtendCurrent));
+        let both = |a: &Samples, b: &Samples, opening: fn(f64, f64) -> f64| {
+            a.iter().zip(b).map(|(a, b)| opening(a * 1e3, b * 1e3)).collect()
+        };
+        let steer = |a, b| {
+            let (a, b) = (sample(Channel::SteerCurrent(a)), sample(Channel::SteerCurrent(b)));
+            both(&a, &b, pins::steer_opening)
+        };
+        let stroke_reading_m = wheels(Channel::Stroke);
+        let stroke_m = stroke_reading_m.clone().map(|reading| uncut(&reading));
+        Ok(Self {
+            name: name.to_owned(),
+            terrain,
+            len,
+            target_stroke_m: wheels(Channel::TargetStroke),
+            arm_mode: sample(Channel::ArmMode),
+            opening: PerWheel::from_fn(|w| both(&a[w], &b[w], pins::valve_opening)),
+            stroke_rate_m_s: PerWheel::from_fn(|w| slope(&stroke_m[w])),
+            stroke_m,
+            stroke_reading_m,
+            cylinder_load_n: wheels(Channel::CylinderLoad),
+            wheel_speed_rad_s: wheels(Channel::WheelSpeed),
+            steer_opening: [
+                steer(SteerSide::FrontA, SteerSide::FrontB),
+                steer(SteerSide::RearA, SteerSide::RearB),
+            ],
+            joint_rad: [sample(Channel::FrontJoint), sample(Channel::RearJoint)],
+            target_joint_rad: sample(Channel::TargetJoint),
+            throttle: sample(Channel::Throttle),
+            pump_pressure_pa: PumpSide::ALL.map(|side| sample(Channel::PumpPressure(side))),
+            roll_rad: sample(Channel::Roll),
+            pitch_rad: sample(Channel::Pitch),
+            fixes: fixes(series),
+            headings: headings(series),
+        })
+    }
+
+    /// Heading and its rate at `at_s`, rad and rad/s; none without a receiver that says them.
+    #[must_use]
+    pub fn heading_at(&self, at_s: f64) -> Option<[f64; 2]> {
+        let k = self.fixes.partition_point(|fix| fix[0] < at_s);
+        if k == 0 || k >= self.headings.len() {
+            return None;
+        }
+        let share = (at_s - self.fixes[k - 1][0]) / (self.fixes[k][0] - self.fixes[k - 1][0]);
+        let ([a, _], [b, rate]) = (self.headings[k - 1], self.headings[k]);
+        Some([a + share * (b - a), rate])
+    }
+
+    /// Length of the run, s.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)]
+    pub fn duration_s(&self) -> f64 {
+        self.len as f64 * DT_S
+    }
+
+    /// Mean of the six wheel speeds at sample `i`, rad/s.
+    #[must_use]
+    pub fn mean_wheel_speed_rad_s(&self, i: usize) -> f64 {
+        self.wheel_speed_rad_s.iter().map(|(_, s)| s[i]).sum::<f64>() / 6.0
+    }
+}
+
+/// The channels without which the blocks cannot be driven; a receiver may be missing.
+fn needed() -> impl Iterator<Item = Channel> {
+    let receiver = [Channel::East, Channel::North, Channel::Heading];
+    let unused = |channel: &Channel| {
+        matches!(
+            channel,
+            Channel::WheelLoad(_)
+                | Channel::BorePressure(_)
+                | Channel::RodPressure(_)
+                | Channel::PumpCurrent(_)
+                | Channel::TargetOpening(_)
+                | Channel::TargetEngineSpeed
+                | Channel::Brake
+                | Channel::Enable
+        )
+    };
+    Channel::all().into_iter().filter(move |c| !receiver.contains(c) && !unused(c))
+}
+
+/// The value in force at each instant of the clock; before the first sample, the first.
+#[allow(clippy::cast_precision_loss)]
+fn held(series: Option<&Series>, len: usize) -> Samples {
+    let Some(series) = series else { return Samples::new() };
+    let mut ahead = series.iter().peekable();
+    let Some((_, mut value)) = ahead.peek().copied() else { return Samples::new() };
+    let sample = |i: usize| {
+        let at_s = i as f64 * DT_S + 0.5 * DT_S;
+        while let Some((_, next)) = ahead.next_if(|(sample_s, _)| *sample_s <= at_s) {
+            value = next;
+        }
+        value
+    };
+    (0..len).map(sample).collect()
+}
+
+/// Slope of a quantised reading: central difference over 0.2 s, one-sided at the ends.
+#[allow(clippy::cast_precision_loss)]
+fn slope(samples: &Samples) -> Samples {
+    const HALF: usize = 10;
+    let end = samples.len().saturating_sub(1);
+    (0..samples.len())
+        .map(|i| {
+            let (from, to) = (i.saturating_sub(HALF), (i + HALF).min(end));
+            if from == to {
+                0.0
+            } else {
+                (samples[to] - samples[from]) / ((to - from) as f64 * DT_S)
+            }
+        })
+        .collect()
+}
+
+/// Step of a stroke's reading, m.
+const CUT_M: f64 = 1.0e-3;
+/// A reading that stays for longer says only that the stroke is within its step.
+const STAYS: usize = 40;
+
+/// Strokes from readings that are cut off to whole millimetres. When a reading changes, the stroke is
+/// just at the edge between the two; in between it goes straight from edge to edge.
+#[allow(clippy::cast_precision_loss)]
+fn uncut(reading: &Samples) -> Samples {
+    let mut known: Vec<(usize, f64)> = Vec::new();
+    let middle = |value: f64| value + 0.5 * CUT_M;
+    let stay = |known: &mut Vec<(usize, f64)>, from: usize, to: usize, value: f64| {
+        if to - from > STAYS {
+            known.push((from + STAYS / 2, middle(value)));
+            known.push((to - STAYS / 2, middle(value)));
+        }
+    };
+    let mut since = 0;
+    for i in 1..reading.len() {
+        if reading[i] != reading[i - 1] {
+            stay(&mut known, since, i, reading[i - 1]);
+            known.push((i, reading[i].max(reading[i - 1])));
+            since = i;
+        }
+    }
+    if let Some(last) = reading.last() {
+        stay(&mut known, since, reading.len(), *last);
+    }
+    let mut after = 0;
+    (0..reading.len())
+        .map(|i| {
+            while after < known.len() && known[after].0 <= i {
+                after += 1;
+            }
+            match (after.checked_sub(1).map(|k| known[k]), known.get(after)) {
+                (Some((from, a)), Some(&(to, b))) => {
+                    a + (b - a) * (i - from) as f64 / (to - from) as f64
+                }
+                (Some((_, value)), None) | (None, Some(&(_, value))) => value,
+                (None, None) => middle(reading[i]),
+            }
+        })
+        .collect()
+}
+
+fn fixes(all: &AllSeries) -> Vec<[f64; 3]> {
+    let (Some(east), Some(north)) = (all.get(&Channel::East), all.get(&Channel::North)) else {
+        return Vec::new();
+    };
+    east.iter().filter_map(|(at_s, x)| Some([at_s, x, north.at(at_s)?])).collect()
+}
+
+/// Headings unwound, with their slope over a second.
+fn headings(all: &AllSeries) -> Vec<[f64; 2]> {
+    const SPAN: usize = 4;
+    let Some(series) = all.get(&Channel::Heading) else { return Vec::new() };
+    let (mut turned, mut last) = (0.0, None);
+    let unwound: Vec<[f64; 2]> = series
+        .iter()
+        .map(|(at_s, heading)| {
+            let before = last.replace(heading).unwrap_or(heading);
+            let step = heading - before;
+            turned += step - TAU * (step / TAU).round();
+            [at_s, turned]
+        })
+        .collect();
+    let first = series.iter().next().map_or(0.0, |(_, heading)| heading);
+    let first = first - TAU * (first / TAU).round();
+    let end = unwound.len().saturating_sub(1);
+    (0..unwound.len())
+        .map(|k| {
+            let (a, b) = (unwound[k.saturating_sub(SPAN)], unwound[(k + SPAN).min(end)]);
+            [first + unwound[k][1], if b[0] > a[0] { (b[1] - a[1]) / (b[0] - a[0]) } else { 0.0 }]
+        })
+        .collect()
+}

@@ -1,0 +1,111 @@
+//! Diagnosis on logs of a second plant, and on what our own plant does with an effect put in.
+
+use std::path::{Path, PathBuf};
+
+use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals};
+use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay, Terrain};
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::Effects;
+use xt28_sim::effects::{Overlay, Scope};
+
+#[allow(clippy::disallowed_macros)] // A test that skips says so.
+fn field_data() -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/field-data");
+    if !path.exists() {
+        eprintln!("SKIPPED: {} is not there", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+fn log(folder: &Path, name: &str) -> (FieldLog, Terrain) {
+    let decoder = Decoder::load(&folder.join("xt28-field.dbc"), &Mapping::default()).unwrap();
+    let path = folder.join(name);
+    let about = folder.join("about.toml");
+    let terrain =
+        if about.exists() { About::terrain_of(&about, &path).unwrap() } else { Terrain::Flat };
+    (FieldLog::load(&path, &decoder, false).unwrap(), terrain)
+}
+
+fn gaps(folder: &Path, names: &[&str]) -> Vec<(Generator, f64)> {
+    let runs: Vec<Signals> = names
+        .iter()
+        .map(|name| {
+            let (log, terrain) = log(folder, name);
+            Signals::new(&log, terrain).unwrap()
+        })
+        .collect();
+    let evidence = Evidence::new(&runs, &Machine::xt28(), Effects::default(), Knob::tolerances());
+    evidence.left(&evidence.base)
+}
+
+#[test]
+fn a_sound_machine_leaves_nothing_to_explain() {
+    let Some(data) = field_data() else { return };
+    let names = ["run-1-arm_step.log.gz", "run-3-s_turn.log.gz", "run-4-straight.log.gz"];
+    for (generator, gap) in gaps(&data.join("dev/dev-05"), &names) {
+        assert!(gap < 10.0, "{generator}: {gap}");
+    }
+}
+
+/// One machine of the set has leaking front arms, as its answer says.
+#[test]
+fn leaking_front_arms_show_on_the_front_arms() {
+    let Some(data) = field_data() else { return };
+    let gaps = gaps(&data.join("dev/dev-01"), &["run-1-arm_step.log.gz"]);
+    let of = |wheel| {
+        let found = gaps.iter().find(|(generator, _)| *generator == Generator::ArmStroke(wheel));
+        found.expect("every arm is watched").1
+    };
+    for leaking in [Wheel::Fr, Wheel::Fl] {
+        for sound in [Wheel::Mr, Wheel::Ml, Wheel::Br, Wheel::Bl] {
+            assert!(of(leaking) > 20.0 * of(sound), "{leaking} {sound}: {gaps:?}");
+        }
+    }
+}
+
+/// The commands of a field log on our own plant with an effect: the fit must find its size.
+fn fitted(effect: &str, scope: Scope, run: &str, overlay: &str) -> Option<(f64, Vec<f64>)> {
+    let folder = field_data()?.join("aux/nominal");
+    let (log, terrain) = log(&folder, run);
+    let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
+    let machine = Machine::xt28();
+    let replay = Replay::run(&log, &machine, &overlay.effects(), &terrain).unwrap();
+    let mut series = replay.all_series().clone();
+    for (channel, samples) in log.all_series() {
+        if channel.is_command() {
+            series.insert(*channel, samples.clone());
+        }
+    }
+    let signals = Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap();
+    let runs = [signals];
+    let evidence = Evidence::new(&runs, &machine, Effects::default(), Knob::all());
+    let hypothesis =
+        Hypothesis::all().into_iter().find(|h| h.effect.name == effect && h.scope == scope)?;
+    let fit = hypothesis.fit(&evidence, evidence.base_cost());
+    Some((fit.log_evidence, fit.values))
+}
+
+#[test]
+fn a_delay_put_into_our_plant_is_found_with_its_size() {
+    let overlay = "[[effect]]\nname = \"arm-delay\"\nscope = \"front\"\ndelay_s = 0.2";
+    let front = Scope::Axle(xt28_machine::Axle::Front);
+    let Some((evidence, values)) = fitted("arm-delay", front, "run-1-arm_step.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 20.0, "{evidence}");
+    assert!((values[0] - 0.2).abs() < 0.04, "{values:?}");
+}
+
+#[test]
+fn a_late_throttle_put_into_our_plant_is_found_with_its_size() {
+    let overlay = "[[effect]]\nname = \"throttle-delay\"\ndelay_s = 0.3";
+    let Some((evidence, values)) =
+        fitted("throttle-delay", Scope::All, "run-4-straight.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 20.0, "{evidence}");
+    assert!((values[0] - 0.3).abs() < 0.06, "{values:?}");
+}

@@ -22,7 +22,7 @@ mod tree;
 use glam::{DMat3, DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
-use self::contact::{Body, Contact};
+use self::contact::{Body, Contact, Hold};
 use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
@@ -172,16 +172,24 @@ impl ReducedBodies {
     fn note_forces(&mut self, contacts: &[Contact], dt_s: f64) {
         self.ground_force_n = PerWheel::splat(0.0);
         self.chassis_force_n = 0.0;
+        let mut slid = [false; 6];
         self.search.stuck = [false; 6];
         for contact in contacts {
             let force = contact.impulse(contact.velocity) / dt_s;
             match contact.body {
                 Body::Wheel(i) => {
                     self.ground_force_n[Wheel::ALL[i]] += force.z;
-                    self.search.stuck[i] |= contact.sticks();
+                    match contact.hold() {
+                        Hold::Open => (),
+                        Hold::Sticks => self.search.stuck[i] = true,
+                        Hold::Slides => slid[i] = true,
+                    }
                 }
                 Body::Frame(_) => self.chassis_force_n += force.length(),
             }
+        }
+        for (stuck, slid) in self.search.stuck.iter_mut().zip(slid) {
+            *stuck &= !slid;
         }
     }
 }

@@ -232,7 +232,8 @@ fn nudged(terrain: &Terrain, number: Number, share: f64) -> Vec<Vec<f64>> {
     run(&mut vehicle, 120, 2.0, |t| lively(t + 1.0)).iter().map(outputs).collect()
 }
 
-/// Central differences over steps of 1e-6 and 1e-5 agree: there is neither noise nor a jump.
+/// Central differences over steps of 1e-6 and 1e-5 agree: there is neither noise nor a jump. (With
+/// each wheel on its nearest minimum alone they differ twentyfold on the gentle ground.)
 #[test]
 fn outputs_are_smooth_in_every_parameter() {
     let numbers: [(&str, Number); 7] = [

@@ -45,6 +45,17 @@ pub(super) enum Body {
     Frame(usize),
 }
 
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// Makes no force.
+    Open,
+    /// Stays within its friction.
+    Sticks,
+    /// Has all its friction against it.
+    Slides,
+}
+
 /// A point of a body at the ground, ready for the step's solver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
@@ -136,11 +147,17 @@ impl Contact {
         self.normal * normal - grip * share
     }
 
-    /// Whether it is closed, and sideways within its friction.
-    pub(super) fn sticks(&self) -> bool {
+    /// What it does at the solver's present guess.
+    pub(super) fn hold(&self) -> Hold {
         let normal = self.normal_impulse(self.velocity);
         let (grip, most) = self.sideways(self.velocity, normal);
-        normal > 0.0 && grip.length() <= most
+        if normal <= 0.0 {
+            Hold::Open
+        } else if grip.length() <= most {
+            Hold::Sticks
+        } else {
+            Hold::Slides
+        }
     }
 
     /// Minus the derivative of [`Self::impulse`], kg. With `coupled` false, sliding friction is

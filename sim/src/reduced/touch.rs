@@ -27,7 +27,7 @@ pub(super) struct Search {
     /// Path that each frame's hull may yet travel before any of it can touch, m. Only saves time:
     /// nothing that is found depends on it.
     clear_m: [f64; 3],
-    /// Wheels that stuck somewhere at the end of the last step: a first guess for this one.
+    /// Wheels that stuck wherever they touched at the end of the last step: a first guess.
     pub(super) stuck: [bool; 6],
 }
 

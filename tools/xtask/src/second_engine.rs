@@ -49,6 +49,8 @@ enum Part {
     Bench,
     /// Many environments on two cores, and the memory of one
     Scale,
+    /// How MuJoCo's wheels stand on a plane and on triangles
+    Contacts,
     /// Write MuJoCo's trajectories that the plant's tests are held to
     Record,
 }
@@ -78,6 +80,12 @@ impl SecondEngine {
         if wanted(Part::Scale) {
             programs.pass_on("scaling")?;
             programs.pass_on("memory")?;
+        }
+        if wanted(Part::Contacts) {
+            for terrain in ["flat", "flat-grid"] {
+                println!("\nMuJoCo at rest, {terrain}\n");
+                programs.contacts(terrain)?;
+            }
         }
         Ok(0)
     }

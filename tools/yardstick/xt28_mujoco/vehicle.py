@@ -112,14 +112,27 @@ class Vehicle:
             axle = data.xaxis[self._hinge["wheel"][wheel]]
             data.xfrc_applied[body, 3:] = drag_nm * axle
 
+    def contacts(self) -> list[int]:
+        """Number of contacts of each wheel."""
+        found = [self._wheel(contact)[0] for contact in self.data.contact]
+        return [found.count(wheel) for wheel in range(len(WHEELS))]
+
+    def sag_m(self, wheel: int) -> float:
+        """How far a wheel is pressed into level ground at height zero."""
+        return self._machine.wheels.radius_m - self.data.xpos[self._wheel_bodies[wheel]][2]
+
+    def _wheel(self, contact) -> tuple[int, float]:
+        """The wheel of a contact, and +1 where the contact's normal points at it."""
+        wheel = self._wheel_of_geom.get(int(contact.geom[1]))
+        if wheel is not None:
+            return wheel, 1.0
+        return self._wheel_of_geom[int(contact.geom[0])], -1.0
+
     def _ground_force_n(self) -> np.ndarray:
         """Vertical part of the normal forces of the step just taken."""
         force, wrench = np.zeros(len(WHEELS)), np.zeros(6)
         for index, contact in enumerate(self.data.contact):
-            wheel = self._wheel_of_geom.get(int(contact.geom[1]))
-            up = 1.0
-            if wheel is None:
-                wheel, up = self._wheel_of_geom[int(contact.geom[0])], -1.0
+            wheel, up = self._wheel(contact)
             mujoco.mj_contactForce(self.model, self.data, index, wrench)
             force[wheel] += up * contact.frame[2] * wrench[0]
         return force

@@ -133,20 +133,35 @@ impl Programs {
         command
     }
 
+    /// Has MuJoCo print how its wheels stand.
+    ///
+    /// # Errors
+    /// When it cannot be run.
+    pub(crate) fn contacts(&self, terrain: &str) -> Outcome<()> {
+        let mut command = self.mujoco("xt28_mujoco.contacts", terrain)?;
+        print!("{}", text_of(&mut command)?);
+        Ok(())
+    }
+
     fn mujoco_command(&self, engine: Engine, job: &Job<'_>) -> Outcome<Command> {
-        let mut command = Command::new(&self.python);
-        command.current_dir(&self.root).env("PYTHONPATH", self.root.join(YARDSTICK));
-        command.env("PYTHONDONTWRITEBYTECODE", "1");
-        command.args(["-m", "xt28_mujoco", job.manoeuvre]);
-        command.arg("--machine").arg(&self.machine);
-        command.arg("--manoeuvres").arg(self.manoeuvres());
-        command.arg(format!("--rate={}", job.rate_hz));
+        let mut command = self.mujoco("xt28_mujoco", job.terrain)?;
+        command.arg(job.manoeuvre).arg(format!("--rate={}", job.rate_hz));
         command.args(engine.mujoco_arguments()).args(job.mujoco);
         let start = text_of(self.example("trajectory").args(["start", job.terrain]))?;
         command.arg(format!("--start={}", start.trim()));
+        Ok(command)
+    }
+
+    /// A module of MuJoCo's side on a ground.
+    fn mujoco(&self, module: &str, terrain: &str) -> Outcome<Command> {
+        let mut command = Command::new(&self.python);
+        command.current_dir(&self.root).env("PYTHONPATH", self.root.join(YARDSTICK));
+        command.env("PYTHONDONTWRITEBYTECODE", "1").args(["-m", module]);
+        command.arg("--machine").arg(&self.machine);
+        command.arg("--manoeuvres").arg(self.manoeuvres());
         // Level ground is a plane to both.
-        if job.terrain != "flat" {
-            command.arg("--grid").arg(self.grid(job.terrain)?);
+        if terrain != "flat" {
+            command.arg("--grid").arg(self.grid(terrain)?);
         }
         Ok(command)
     }

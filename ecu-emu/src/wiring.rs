@@ -59,12 +59,21 @@ const SETTING_GAIN_M: f64 = 10.0;
 /// Opening per load error, 1/N: 1 kN counts as 5 mm.
 const SETTING_GAIN_N: f64 = 5.0e-5;
 
-/// A machine whose arms somebody sets before its ECUs run, wheels free to roll.
+/// Steeper than this the machine would roll away while its arms are set, rad: what its wheels' rolling
+/// resistance holds.
+const FREE_TO_ROLL_RAD: f64 = 0.02;
+
+/// A machine whose arms somebody sets before its ECUs run: wheels free to roll on the level, so that
+/// none pushes against another, and braked on a slope.
 pub(crate) fn setting(config: &EmulatorConfig, s: &VehicleState, engine_rpm: f64) -> Actuation {
     let opening = |w: Wheel| {
         let load = config.load_n.map_or(0.0, |load_n| load_n[w] - s.cylinder_force_n[w]);
         let stroke = config.stroke_m[w] - s.stroke_m[w];
         (SETTING_GAIN_M * stroke + SETTING_GAIN_N * load).clamp(-0.3, 0.3)
     };
-    Actuation { arm_opening: PerWheel::from_fn(opening), ..Actuation::idle(engine_rpm) }
+    Actuation {
+        arm_opening: PerWheel::from_fn(opening),
+        brake_released: s.pitch_rad.abs() < FREE_TO_ROLL_RAD,
+        ..Actuation::idle(engine_rpm)
+    }
 }

@@ -35,6 +35,11 @@ pub(crate) const RULES: &[Rule] = &[
         by: "xt28-bus",
         because: "never 4: only dbc/bus opens a CAN socket",
     },
+    Rule::Unreachable {
+        from: "xt28-terrain",
+        never: &["rapier3d", "xt28-sim"],
+        because: "the ground needs no engine: who drives may read it too",
+    },
     Rule::UsesOnly {
         package: "xt28-safety",
         allowed: &["libm"],
@@ -108,7 +113,8 @@ mod tests {
             ("xt28-dbc-model", true, &[]),
             ("xt28-dbc", true, &[("xt28-dbc-model", Kind::Build)]),
             ("xt28-bus", true, &[("xt28-dbc", Kind::Normal), ("socketcan", Kind::Normal)]),
-            ("xt28-sim", true, &[("rapier3d", Kind::Normal)]),
+            ("xt28-terrain", true, &[]),
+            ("xt28-sim", true, &[("rapier3d", Kind::Normal), ("xt28-terrain", Kind::Normal)]),
             ("xt28-ecus", true, &[("xt28-dbc", Kind::Normal)]),
             ("ecu-emu", true, &[("xt28-ecus", Kind::Normal), ("xt28-sim", Kind::Normal)]),
             ("xt28-safety", true, &[("libm", Kind::Normal), ("proptest", Kind::Dev)]),
@@ -137,6 +143,7 @@ mod tests {
             ("xt28-sim", "xt28-dbc", "xt28-sim -> xt28-dbc breaks never 2"),
             ("xt28-sim", "xt28-bus", "xt28-sim -> xt28-bus -> socketcan breaks never 2"),
             ("xt28-bus", "xt28-sim", "gateway -> xt28-bus -> xt28-sim -> rapier3d breaks never 3"),
+            ("xt28-terrain", "rapier3d", "xt28-terrain -> rapier3d breaks the ground"),
             ("gateway", "socketcan", "uses socketcan: never 4"),
             ("xt28-safety", "socketcan", "uses socketcan: the safety kernel"),
         ];

@@ -1,0 +1,25 @@
+//! `slippery-ground`: wheels turn faster than the machine travels.
+
+use crate::causes::{Block, Cause, Parameter, Span};
+use crate::manoeuvre::Manoeuvre;
+
+/// The ground's top layer gives way, and holds less.
+pub(super) const CAUSE: Cause = Cause {
+    name: "slippery-ground",
+    block: Block::Drive,
+    is_known: true,
+    signal: "position",
+    is_scoped: true,
+    may_begin_late: false,
+    shown_by: Manoeuvre::Straight,
+    parameters: &[
+        Parameter { name: "friction", spans: &[Span(0.15, 0.4)] },
+        Parameter { name: "slip", spans: &[Span(0.05, 0.2)] },
+    ],
+    apply: |truth, scope, v| {
+        for wheel in scope.wheels() {
+            truth.body.tyres[wheel].friction = v[0];
+            truth.body.tyres[wheel].slip = v[1];
+        }
+    },
+};

@@ -188,3 +188,16 @@ fn a_machine_on_brush_tyres_drives_and_turns() {
     assert!((s.joint_rad[0].to_degrees() - 15.0).abs() < 0.7, "{:?}", s.joint_rad);
     assert!(s.yaw_rad > 0.3, "{}", s.yaw_rad);
 }
+
+/// Rolling steadily, the motors make what the rolling resistance takes: nothing else brakes, and
+/// nothing pushes.
+#[test]
+fn rolling_costs_the_rolling_resistance() {
+    let machine = Machine::xt28();
+    let w = &machine.wheels;
+    let asked_nm = w.rolling_resistance * machine.mass_kg() * GRAVITY_M_S2 * w.radius_m;
+    let states = drive(&machine, &Effects::default(), &Terrain::Flat, 20.0);
+    let late = &states[states.len() - 1000..];
+    let made_nm = late.iter().map(|s| s.wheel_torque_nm.sum()).sum::<f64>() / late.len() as f64;
+    assert!((made_nm / asked_nm - 1.0).abs() < 2e-3, "{made_nm} Nm of {asked_nm} Nm");
+}

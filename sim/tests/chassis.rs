@@ -99,3 +99,39 @@ fn a_bank_too_steep_rolls_the_machine_over_and_the_ground_stops_it() {
     }
     assert!(landed && turned > 1.6, "landed {landed}, turned by {turned} rad");
 }
+
+/// Laid on its side and on its roof, the machine comes to rest on the ground and the ground carries it.
+#[test]
+fn a_machine_that_lies_down_stays_on_the_ground() {
+    let (machine, effects) = (Machine::xt28(), Effects::default());
+    let idle = Actuation { brake_released: false, ..Actuation::idle(1200.0) };
+    let weight_n = machine.mass_kg() * xt28_machine::GRAVITY_M_S2;
+    for (roll_rad, up_m) in [(1.4, 1.7), (-1.4, 1.7), (3.0, 3.4)] {
+        let mut lying = *Vehicle::new(&machine, &Terrain::Flat, PerWheel::splat(0.17)).state();
+        lying.roll_rad = roll_rad;
+        lying.position_m[2] = up_m;
+        let mut vehicle: Vehicle = Vehicle::from_measured(
+            &machine,
+            &effects,
+            &Terrain::Flat,
+            STEP,
+            &lying,
+            &idle,
+            core::time::Duration::ZERO,
+        );
+        let mut carried_n = 0.0;
+        for step in 0..2000 {
+            vehicle.step(&idle);
+            let s = vehicle.state();
+            assert!(s.position_m.iter().all(|m| m.is_finite() && m.abs() < 20.0), "{step}");
+            if step >= 1800 {
+                carried_n += (s.chassis_force_n + s.ground_force_n.sum()) / 200.0;
+            }
+        }
+        let s = vehicle.state();
+        assert!((carried_n / weight_n - 1.0).abs() < 0.1, "{roll_rad}: {carried_n} N");
+        let turning = s.front_rate_rad_s.iter().fold(0.0_f64, |most, w| most.max(w.abs()));
+        assert!(turning < 0.05, "{roll_rad}: {:?}", s.front_rate_rad_s);
+        assert!(s.position_m[2] > 0.5, "{roll_rad}: {:?}", s.position_m);
+    }
+}

@@ -6,7 +6,7 @@ use xt28_sim::Ramp;
 use crate::manoeuvre::{Manoeuvre, Script};
 
 /// File name of the database that the logs were sent with.
-pub(crate) const DBC_FILE: &str = "xt28.dbc";
+pub(crate) const DBC_FILE: &str = "xt28-field.dbc";
 
 #[derive(Serialize)]
 struct About<'a> {

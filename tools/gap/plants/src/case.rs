@@ -9,12 +9,13 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use xt28_bus::candump::Writer;
-use xt28_dbc::{EncodeError, XT28_DBC};
+use xt28_dbc::EncodeError;
 use xt28_sim::ReducedBodies;
 
 use crate::about;
 use crate::answer::{Answer, Fact};
-use crate::causes::{Block, CAUSES, Cause};
+use crate::causes::{Block, CAUSES, Cause, Scopes};
+use crate::database;
 use crate::manoeuvre::{Manoeuvre, Script};
 use crate::run::{Timeline, run};
 use crate::scope::Scope;
@@ -122,7 +123,7 @@ impl Case {
                 .collect();
             if let Some(&cause) = open.choose(&mut random) {
                 taken.push(cause.block);
-                let scope = if cause.is_scoped { scope(&mut random) } else { Scope::All };
+                let scope = scope(cause.scopes, &mut random);
                 case.faults.push(Fault::draw(cause, scope, &mut random));
             }
         }
@@ -137,7 +138,7 @@ impl Case {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut case = Self::sound(seed, Truth::toleranced(&mut random), &mut random);
         case.kind = if cause.is_known { Kind::Single } else { Kind::Unknown };
-        let scope = if cause.is_scoped { scope } else { Scope::All };
+        let scope = if cause.scopes == Scopes::Whole { Scope::All } else { scope };
         case.faults.push(Fault::draw(cause, scope, &mut random));
         case
     }
@@ -235,6 +236,12 @@ impl Case {
         about::text(&self.name, &self.runs)
     }
 
+    /// Text of the database that the logs were sent with.
+    #[must_use]
+    pub fn dbc() -> String {
+        database::text()
+    }
+
     /// The logs of all runs.
     ///
     /// # Errors
@@ -281,7 +288,7 @@ impl Case {
         for (name, bytes) in self.logs()? {
             put(&name, &bytes)?;
         }
-        put(about::DBC_FILE, XT28_DBC.as_bytes())?;
+        put(about::DBC_FILE, database::text().as_bytes())?;
         put("about.toml", self.about().as_bytes())
     }
 
@@ -324,7 +331,7 @@ impl Fault {
 }
 
 /// All wheels, an axle, a side or one wheel: two, one, one and one times in five.
-fn scope(random: &mut ChaCha8Rng) -> Scope {
+fn scope(scopes: Scopes, random: &mut ChaCha8Rng) -> Scope {
     let groups: [&[Scope]; 5] = [
         &Scope::EVERY[..1],
         &Scope::EVERY[..1],
@@ -332,6 +339,11 @@ fn scope(random: &mut ChaCha8Rng) -> Scope {
         &Scope::EVERY[4..6],
         &Scope::EVERY[6..],
     ];
+    let groups = match scopes {
+        Scopes::Whole => return Scope::All,
+        Scopes::Any => &groups[..],
+        Scopes::Part => &groups[2..],
+    };
     let group = groups[random.random_range(0..groups.len())];
     group[random.random_range(0..group.len())]
 }

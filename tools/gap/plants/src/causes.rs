@@ -73,6 +73,17 @@ pub enum Block {
     Bus,
 }
 
+/// What a cause can be on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scopes {
+    /// The machine: it has no wheel.
+    Whole,
+    /// Any group of wheels.
+    Any,
+    /// Any group but all of them: alike on all, nothing would show it.
+    Part,
+}
+
 /// A range that a parameter is drawn from, evenly: from noticeable to strong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span(pub f64, pub f64);
@@ -98,8 +109,8 @@ pub struct Cause {
     /// The signal that it shows in first: stroke, load, opening, joint, steer, wheel, pump, position,
     /// att (roll and pitch), or bus (when frames come).
     pub signal: &'static str,
-    /// Whether it can be on some wheels only.
-    pub is_scoped: bool,
+    /// What it can be on.
+    pub scopes: Scopes,
     /// Whether it can begin in the middle of a run.
     pub may_begin_late: bool,
     /// The manoeuvre that shows it best.
@@ -232,7 +243,7 @@ mod tests {
     #[test]
     fn a_scope_spares_the_other_wheels() {
         let scope = Scope::Axle(xt28_machine::Axle::Middle);
-        for cause in CAUSES.iter().filter(|cause| cause.is_scoped) {
+        for cause in CAUSES.iter().filter(|cause| cause.scopes != Scopes::Whole) {
             let (mut all, mut some) = (Truth::nominal(), Truth::nominal());
             (cause.apply)(&mut all, Scope::All, &cause.strongest());
             (cause.apply)(&mut some, scope, &cause.strongest());

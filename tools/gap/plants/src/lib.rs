@@ -18,6 +18,7 @@ mod answer;
 mod body;
 mod case;
 mod causes;
+mod database;
 mod drive;
 mod ecu;
 mod history;
@@ -35,7 +36,7 @@ mod wire;
 
 pub use answer::{Answer, Fact};
 pub use case::{Case, CaseError, Kind, Log};
-pub use causes::{Block, CAUSES, Cause, Parameter, Span};
+pub use causes::{Block, CAUSES, Cause, Parameter, Scopes, Span};
 pub use manoeuvre::Manoeuvre;
 pub use scope::Scope;
 pub use seal::Seal;

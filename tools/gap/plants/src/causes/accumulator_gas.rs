@@ -1,6 +1,6 @@
 //! `accumulator-gas`: nitrogen instead of the linear spring.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 use crate::truth::Gas;
 
@@ -10,7 +10,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "load",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

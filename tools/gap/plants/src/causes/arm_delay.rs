@@ -1,6 +1,6 @@
 //! `arm-delay`: the spool gets its command late.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Task, driver and pilot stage add up; a ring of past commands is read some time back.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "delay_s", spans: &[Span(0.1, 0.35)] }],

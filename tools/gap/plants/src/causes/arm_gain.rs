@@ -1,6 +1,6 @@
 //! `arm-gain`: the position controllers have other gains.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A parameter set of another machine.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "opening",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

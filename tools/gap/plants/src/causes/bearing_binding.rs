@@ -1,6 +1,6 @@
 //! `bearing-binding`: a wheel bearing binds once a turn.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Drag that comes and goes with the wheel's angle. No catalogue has it.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: false,
     signal: "wheel",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "torque_nm", spans: &[Span(3000.0, 7000.0)] }],

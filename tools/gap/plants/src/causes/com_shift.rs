@@ -1,6 +1,6 @@
 //! `com-shift`: the front frame's centre of mass is elsewhere.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Counterweights or a crane that nobody wrote down.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Payload,
     is_known: true,
     signal: "load",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

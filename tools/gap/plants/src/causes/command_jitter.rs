@@ -1,6 +1,6 @@
 //! `command-jitter`: commands come late, each by its own time.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A gateway that shares its processor.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Bus,
     is_known: true,
     signal: "bus",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "latest_s", spans: &[Span(0.02, 0.06)] }],

@@ -1,6 +1,6 @@
 //! `drive-lag`: the swash plates move slowly.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A servo short of control oil.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: true,
     signal: "wheel",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: true,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "time_constant_s", spans: &[Span(0.25, 0.8)] }],

@@ -1,6 +1,6 @@
 //! `frame-loss`: frames get lost.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A worn connector: each by itself, on its way to the ECUs and to the log.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Bus,
     is_known: true,
     signal: "bus",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "share", spans: &[Span(0.03, 0.12)] }],

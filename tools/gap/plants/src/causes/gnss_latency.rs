@@ -1,6 +1,6 @@
 //! `gnss-latency`: fixes are older than they say.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// The receiver's own filter and a radio link.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "position",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "delay_s", spans: &[Span(0.15, 0.5)] }],

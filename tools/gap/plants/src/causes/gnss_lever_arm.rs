@@ -1,6 +1,6 @@
 //! `gnss-lever-arm`: the antenna is not where it was measured.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Moved on the roof.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "position",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::STurn,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `imu-offset`: the inertial unit is not level.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A bent bracket.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "att",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `leakage-drift`: a loaded cylinder sinks.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Laminar flow past the piston, in proportion to the load.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "rate_m_s", spans: &[Span(0.003, 0.01)] }],

@@ -1,6 +1,6 @@
 //! `load-dependent-speed`: speed depends on the cylinder's load.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A compensator that sticks lets a share of the load pressure through to the spool.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "loss", spans: &[Span(0.45, 0.95)] }],

@@ -1,6 +1,6 @@
 //! `oil-heating`: the oil warms up from stiff to thin.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Damping runs from several times nominal to as small a part of it. No catalogue has it.
@@ -8,12 +8,12 @@ pub(super) const CAUSE: Cause = Cause {
     name: "oil-heating",
     block: Block::Arms,
     is_known: false,
-    signal: "load",
-    is_scoped: false,
+    signal: "stroke",
+    scopes: Scopes::Whole,
     may_begin_late: false,
-    shown_by: Manoeuvre::Ramp,
+    shown_by: Manoeuvre::ArmStep,
     parameters: &[
-        Parameter { name: "cold_factor", spans: &[Span(3.0, 5.0)] },
+        Parameter { name: "cold_factor", spans: &[Span(3.5, 6.0)] },
         Parameter { name: "heating_s", spans: &[Span(25.0, 40.0)] },
     ],
     apply: |truth, scope, v| {

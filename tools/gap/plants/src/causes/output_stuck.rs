@@ -1,6 +1,6 @@
 //! `output-stuck`: an output stage freezes now and then.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// The ECU says one current and holds another. No catalogue has it.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: false,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Multisine,
     parameters: &[

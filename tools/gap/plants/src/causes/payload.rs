@@ -1,6 +1,6 @@
 //! `payload`: logs in a bunk that was declared empty.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 use crate::truth::Logs;
 
@@ -10,7 +10,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Payload,
     is_known: true,
     signal: "load",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

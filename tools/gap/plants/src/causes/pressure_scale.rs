@@ -1,6 +1,6 @@
 //! `pressure-scale`: a bore pressure sensor reads a share too much or too little.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Of another range than the ECU thinks.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "load",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "factor", spans: &[Span(0.82, 0.91), Span(1.09, 1.18)] }],

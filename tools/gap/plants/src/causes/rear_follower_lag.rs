@@ -1,6 +1,6 @@
 //! `rear-follower-lag`: the rear joint follows late and weakly.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A filter on the front angle in the ECU, and another ratio.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: true,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::STurn,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `rolling-resistance`: the wheels roll hard.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Soft ground or a low tyre: drag torque over normal force and radius.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: true,
     signal: "pump",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "coefficient", spans: &[Span(0.06, 0.12)] }],

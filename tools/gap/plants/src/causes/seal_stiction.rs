@@ -1,6 +1,6 @@
 //! `seal-stiction`: the rod sticks in its seals.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Friction beside the oil: the pressures no longer show what the wheel carries.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "load",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Multisine,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `slippery-ground`: wheels turn faster than the machine travels.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// The ground's top layer gives way, and holds less.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: true,
     signal: "position",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[

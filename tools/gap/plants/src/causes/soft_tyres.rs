@@ -1,6 +1,6 @@
 //! `soft-tyres`: the tyres give.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Low pressure: a spring and a damper between rim and ground.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Tyre,
     is_known: true,
     signal: "att",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `speed-asymmetry`: an arm goes out slower than in.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Notches cut alike for both chambers, which the piston sees as different areas.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

@@ -1,6 +1,6 @@
 //! `standstill-drag`: idle motors hold their wheels.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// An arm that swings at a stand then pinches its wheel against the ground.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: true,
     signal: "load",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "torque_nm", spans: &[Span(2000.0, 6000.0)] }],

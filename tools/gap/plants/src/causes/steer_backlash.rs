@@ -1,6 +1,6 @@
 //! `steer-backlash`: the pins of the steering cylinders have clearance.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Within it nothing but the ground holds the joint.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: true,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::STurn,
     parameters: &[Parameter { name: "width_rad", spans: &[Span(0.026, 0.06)] }],

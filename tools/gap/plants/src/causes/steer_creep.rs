@@ -1,6 +1,6 @@
 //! `steer-creep`: the joints creep to one side.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A steering cylinder that leaks on one side. No catalogue has it.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: false,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: false,
     shown_by: Manoeuvre::STurn,
     parameters: &[Parameter {

@@ -1,6 +1,6 @@
 //! `steer-delay`: the steering spools get their command late.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A dead time in the loop about the joint.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: true,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: true,
     shown_by: Manoeuvre::STurn,
     parameters: &[Parameter { name: "delay_s", spans: &[Span(0.15, 0.45)] }],

@@ -1,6 +1,6 @@
 //! `steer-lag`: the steering valves' pilot stages fill slowly.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// As for an arm's valve.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: true,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: true,
     shown_by: Manoeuvre::STurn,
     parameters: &[Parameter { name: "time_constant_s", spans: &[Span(0.2, 0.6)] }],

@@ -1,6 +1,6 @@
 //! `steer-rate`: the joints turn at other rates.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A flow setting of another machine.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Steering,
     is_known: true,
     signal: "joint",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: true,
     shown_by: Manoeuvre::STurn,
     parameters: &[Parameter { name: "factor", spans: &[Span(0.45, 0.7), Span(1.4, 1.8)] }],

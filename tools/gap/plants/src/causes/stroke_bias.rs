@@ -1,6 +1,6 @@
 //! `stroke-bias`: a position sensor reads off by a length.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Mounted off its mark; the controller holds the wrong stroke.
@@ -8,8 +8,8 @@ pub(super) const CAUSE: Cause = Cause {
     name: "stroke-bias",
     block: Block::Sensor,
     is_known: true,
-    signal: "stroke",
-    is_scoped: true,
+    signal: "load",
+    scopes: Scopes::Part,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "bias_m", spans: &[Span(-0.025, -0.008), Span(0.008, 0.025)] }],

@@ -1,6 +1,6 @@
 //! `stroke-scale`: a position sensor reads a share too much or too little.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Calibrated over another length.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "factor", spans: &[Span(0.92, 0.96), Span(1.04, 1.08)] }],

@@ -1,6 +1,6 @@
 //! `stroke-sensor-lag`: a position sensor is slow.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Filtered in its own electronics; the loop about it overshoots. No catalogue has it.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: false,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "time_constant_s", spans: &[Span(0.25, 0.7)] }],

@@ -1,6 +1,6 @@
 //! `throttle-delay`: the pumps get the throttle late.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// From the ECU's demand to the swash plates.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Drive,
     is_known: true,
     signal: "wheel",
-    is_scoped: false,
+    scopes: Scopes::Whole,
     may_begin_late: true,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "delay_s", spans: &[Span(0.15, 0.45)] }],

@@ -1,6 +1,6 @@
 //! `unsupported-sag`: an arm that carries little draws out.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// The rod side's check opens too soon and the wheel's weight does the rest.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[

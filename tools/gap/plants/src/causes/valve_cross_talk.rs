@@ -1,6 +1,6 @@
 //! `valve-cross-talk`: an arm follows the command of the one beside it.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A shared pilot gallery with a worn plug. No catalogue has it.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: false,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::SingleArm,
     parameters: &[Parameter { name: "share", spans: &[Span(0.25, 0.5)] }],

@@ -1,6 +1,6 @@
 //! `valve-deadband`: the lands cover the ports for longer than the ECU thinks.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Overlap of the spool beyond its starting current.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::Multisine,
     parameters: &[Parameter { name: "deadband", spans: &[Span(0.02, 0.06)] }],

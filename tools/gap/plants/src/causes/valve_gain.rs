@@ -1,6 +1,6 @@
 //! `valve-gain`: all speeds of an arm are scaled.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// The drop held over the spool is not the one it was cut for; flow goes by its root.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "factor", spans: &[Span(0.55, 0.8), Span(1.2, 1.45)] }],

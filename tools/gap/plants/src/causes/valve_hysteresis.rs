@@ -1,6 +1,6 @@
 //! `valve-hysteresis`: dry friction holds the spool.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// Half the width is what friction holds the spool off, either way.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::Multisine,
     parameters: &[Parameter { name: "width", spans: &[Span(0.04, 0.09)] }],

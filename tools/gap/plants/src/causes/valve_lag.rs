@@ -1,6 +1,6 @@
 //! `valve-lag`: the pilot stage fills slowly.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A clogged damping orifice before the spool.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Arms,
     is_known: true,
     signal: "stroke",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: true,
     shown_by: Manoeuvre::ArmStep,
     parameters: &[Parameter { name: "time_constant_s", spans: &[Span(0.1, 0.4)] }],

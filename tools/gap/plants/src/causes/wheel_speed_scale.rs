@@ -1,6 +1,6 @@
 //! `wheel-speed-scale`: a wheel's speed reads too high or too low.
 
-use crate::causes::{Block, Cause, Parameter, Span};
+use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
 /// A pulse ring with another number of teeth, or a worn tyre.
@@ -9,7 +9,7 @@ pub(super) const CAUSE: Cause = Cause {
     block: Block::Sensor,
     is_known: true,
     signal: "wheel",
-    is_scoped: true,
+    scopes: Scopes::Any,
     may_begin_late: false,
     shown_by: Manoeuvre::Straight,
     parameters: &[Parameter { name: "factor", spans: &[Span(0.9, 0.96), Span(1.04, 1.1)] }],

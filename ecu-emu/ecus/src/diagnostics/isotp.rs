@@ -180,6 +180,7 @@ mod tests {
         end.on_frame(at(0), &[0x10, 20, 1, 2, 3, 4, 5, 6]);
         end.on_frame(at(1), &[0x22, 0, 0, 0, 0, 0, 0, 0]);
         assert_eq!(end.take_failure(), Some(Failure::Sequence));
+        assert_eq!(end.poll(at(1)), None, "no flow control for what is given up");
         end.on_frame(at(2), &[0x10, 65, 1, 2, 3, 4, 5, 6]);
         assert_eq!(end.take_failure(), Some(Failure::Overflow));
         assert_eq!(end.poll(at(2)).map(|fc| fc[0]), Some(0x32), "says so");

@@ -72,14 +72,12 @@ impl<const N: usize> Receiver<N> {
             // One that nobody waits for is ignored (9.8.3).
             return Ok(());
         };
-        if sequence != due {
-            self.state = State::Idle;
-            return Err(Failure::Sequence);
-        }
         let left = length - self.received;
         // All but the last are full.
-        let Some(part) = data.get(..left.min(IN_CONSECUTIVE)) else {
-            self.state = State::Idle;
+        let part = data.get(..left.min(IN_CONSECUTIVE)).filter(|_| sequence == due);
+        let Some(part) = part else {
+            // Nobody is to go on with a message that is given up.
+            (self.state, self.flow_control) = (State::Idle, None);
             return Err(Failure::Sequence);
         };
         self.store(part)?;

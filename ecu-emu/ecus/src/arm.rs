@@ -174,7 +174,7 @@ impl ArmEcu {
         }
 
         let demand = demand.filter(|_| self.state == State::Active).unwrap_or(ArmDemand::Off);
-        let currents = self.currents(&demand, &readings);
+        let currents = self.currents(&demand, &readings, health);
         out.solenoid_a_ma = currents.actual_ma.map(|[a, _]| a);
         out.solenoid_b_ma = currents.actual_ma.map(|[_, b]| b);
 
@@ -207,9 +207,14 @@ impl ArmEcu {
     }
 
     /// What the solenoids get for a demand.
-    fn currents(&mut self, demand: &ArmDemand, readings: &ArmReadings) -> Currents {
+    fn currents(&mut self, demand: &ArmDemand, readings: &ArmReadings, health: Health) -> Currents {
         if let ArmDemand::Automatic(height_m) = demand {
             self.control = PerWheel::splat(PositionControl::default());
+            // One false input sets all six arms in motion, so all wait until it is known for broken.
+            if health == Health::Doubtful {
+                self.automatic.reset();
+                return Currents::default();
+            }
             let angles_deg = self.attitude.angles_deg();
             return self.automatic.step(*height_m, readings, angles_deg, &self.limit);
         }

@@ -28,6 +28,11 @@ const SUPPLY_V: RangeInclusive<f64> = 18.0..=32.0;
 /// What the status frames can say of it, V.
 const SUPPLY_MAX_V: f64 = 51.0;
 
+/// Whether an input at `mv` says anything; what is not a number does not.
+pub(crate) fn in_range(mv: f64) -> bool {
+    WINDOW_MV.contains(&mv)
+}
+
 /// Watches one input.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct InputCheck {
@@ -48,7 +53,7 @@ impl InputCheck {
     /// What `mv` at `now` says of the input, and how it fails if it is broken. A value that is not a
     /// number is out of range.
     pub(crate) fn test(&mut self, now: SimTime, mv: f64) -> (Health, Option<Fmi>) {
-        if !WINDOW_MV.contains(&mv) {
+        if !in_range(mv) {
             // What comes back from out of range has not leapt.
             self.last_mv = None;
             let since = *self.doubted_since.get_or_insert(now);

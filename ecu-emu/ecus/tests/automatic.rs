@@ -162,6 +162,31 @@ fn any_input_in_the_loop_that_breaks_stops_the_arms() {
     }
 }
 
+/// A wire that breaks is known for broken after 200 ms; a loose one never. Neither moves an arm.
+#[test]
+fn an_input_in_doubt_opens_no_valve_then_or_later() {
+    let breaks: [fn(&mut ArmPins); 4] = [
+        |pins| pins.pressure_a_mv[Wheel::Fl] = 5_000.0,
+        |pins| pins.pressure_b_mv[Wheel::Mr] = 5_500.0,
+        |pins| pins.pressure_a_mv[Wheel::Bl] = 0.0,
+        |pins| pins.stroke_mv[Wheel::Fr] = 0.0,
+    ];
+    for broken in breaks {
+        let mut rig = Rig::new();
+        rig.automatic(HOLD_MM);
+        let sound = rig.pins;
+        broken(&mut rig.pins);
+        for tick in 0..60 {
+            if tick == 19 {
+                rig.pins = sound;
+            }
+            let status = rig.tick(ArmTargetMode::Automatic, HOLD_MM);
+            assert_eq!(status.state, ArmStatusState::Active, "tick {tick}");
+            assert_eq!(rig.opening(), PerWheel::splat(0.0), "tick {tick}");
+        }
+    }
+}
+
 #[test]
 fn position_control_needs_neither_pressures_nor_attitude() {
     let mut rig = Rig::new();

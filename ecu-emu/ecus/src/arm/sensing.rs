@@ -3,6 +3,7 @@
 use xt28_machine::{Linkage, Machine, PerWheel, Wheel};
 
 use super::ArmPins;
+use crate::input_check::in_range;
 use crate::pins;
 
 /// Coefficient of the pressure filter: 1 Hz at 100 Hz (facts 3.2).
@@ -70,8 +71,16 @@ impl ArmSensing {
             let change_mm = stroke_mm[w] - last.stroke_mm[w];
             whole((last.stroke_rate[w] + RATE_GAIN * change_mm) / RATE_DIVISOR)
         });
-        let pressure_a_kpa = PerWheel::from_fn(|w| filtered(last.pressure_a_kpa[w], raw_a_kpa[w]));
-        let pressure_b_kpa = PerWheel::from_fn(|w| filtered(last.pressure_b_kpa[w], raw_b_kpa[w]));
+        // A false pressure would outlast its cause by half a second in a filter of 1 Hz.
+        let taken = |last_kpa, raw_kpa, mv| {
+            if in_range(mv) { filtered(last_kpa, raw_kpa) } else { last_kpa }
+        };
+        let pressure_a_kpa = PerWheel::from_fn(|w| {
+            taken(last.pressure_a_kpa[w], raw_a_kpa[w], pins.pressure_a_mv[w])
+        });
+        let pressure_b_kpa = PerWheel::from_fn(|w| {
+            taken(last.pressure_b_kpa[w], raw_b_kpa[w], pins.pressure_b_mv[w])
+        });
         let load_dan = PerWheel::from_fn(|w| self.load_dan(pressure_a_kpa[w], pressure_b_kpa[w]));
         let readings = ArmReadings {
             stroke_mm,

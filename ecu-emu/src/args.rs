@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use ecu_emu::{Profile, Quirks, SensorFault, UnknownWire, Wire};
+use xt28_sim::Solver;
 
 /// The Xt28's two ECUs on a CAN interface, with a simulated machine behind them.
 ///
@@ -31,6 +32,10 @@ pub(crate) struct Args {
     /// Effects that the machine has beyond the nominal one (TOML; `xt28 effects` lists them)
     #[arg(long, value_name = "FILE")]
     pub(crate) effects: Option<PathBuf>,
+
+    /// What solves the rigid bodies: `rapier`, the reference, or `reduced`, the fast core
+    #[arg(long, value_name = "NAME", default_value_t)]
+    pub(crate) solver: Solver,
 
     /// Whose control runs: `paper`, or the firmware of `2016`, which an operator drives
     #[arg(long, value_name = "NAME", default_value_t)]

@@ -7,7 +7,7 @@ use xt28_dbc::{Frame, Outbox};
 use xt28_ecus::Profile;
 use xt28_ecus::firmware_2016::Quirks;
 use xt28_machine::{Machine, PerWheel, SimTime};
-use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Terrain, Vehicle, VehicleState};
+use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Solver, Terrain, VehicleState};
 use xt28_ubx::Geodetic;
 
 use crate::acquisition::Acquisition;
@@ -33,6 +33,8 @@ pub struct EmulatorConfig {
     pub machine: Machine,
     /// What is true of it beyond the nominal machine: in plant, sensors, ECUs and on the bus.
     pub effects: Effects,
+    /// What solves its rigid bodies.
+    pub solver: Solver,
     /// What it stands on.
     pub terrain: Terrain,
     /// Strokes at the start, m.
@@ -61,6 +63,7 @@ impl EmulatorConfig {
         Self {
             machine,
             effects: Effects::default(),
+            solver: Solver::default(),
             terrain,
             stroke_m: PerWheel::splat(0.17),
             load_n: None,
@@ -93,7 +96,7 @@ pub struct Emulator {
     gnss: GnssReceiver,
     receiver: Receiver,
     gnss_bytes: Vec<u8>,
-    plant: Vehicle,
+    plant: Box<dyn Plant + Send>,
 }
 
 impl Emulator {
@@ -102,7 +105,8 @@ impl Emulator {
     pub fn new(config: &EmulatorConfig) -> Self {
         let machine = &config.machine;
         let effects = &config.effects;
-        let mut plant = Vehicle::with(machine, effects, &config.terrain, config.stroke_m, STEP);
+        let (terrain, stroke_m) = (&config.terrain, config.stroke_m);
+        let mut plant = config.solver.vehicle(machine, effects, terrain, stroke_m, STEP);
         let engine = Engine::new(machine.drive.engine_speed_rpm);
         for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
             let setting = wiring::setting(config, plant.state(), engine.speed_rpm());

@@ -90,6 +90,7 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
         config.mishaps = Mishaps::load(path)?;
     }
     config.mishaps.faults.extend(&args.sensor_fault);
+    config.solver = args.solver;
     config.profile = args.profile;
     if args.profile == Profile::Firmware2016 && !config.mishaps.events.is_empty() {
         return Err("--mishaps: events of the supply are for the paper's profile; \

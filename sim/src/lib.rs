@@ -15,6 +15,7 @@ mod plant;
 mod rapier;
 mod reduced;
 mod sensors;
+mod solver;
 mod state;
 mod vehicle;
 
@@ -30,9 +31,10 @@ pub use parts::{
     ArmPart, Brush, HullBall, Part, Parts, REFERENCE_STROKE_M, RollHinge, Tilt, TyrePart,
 };
 pub use plant::{Plant, STEP};
-pub use rapier::RapierBodies;
+pub use rapier::{RapierBodies, Tread};
 pub use reduced::ReducedBodies;
 pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample, Readings, Sensors};
+pub use solver::{Solver, UnknownSolver};
 pub use state::VehicleState;
 pub use vehicle::Vehicle;
 pub use xt28_terrain::{self as terrain, Ramp, Terrain, TerrainError, TerrainSpec};

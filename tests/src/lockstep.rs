@@ -66,7 +66,7 @@ impl<W: Write> Lockstep<W> {
     /// # Errors
     /// [`RunError::Policy`].
     pub fn new(setup: &Setup, log: W) -> Result<Self, RunError> {
-        let Setup { scenario, machine, overlay, terrain, seed, .. } = setup;
+        let Setup { scenario, machine, overlay, solver, terrain, seed, .. } = setup;
         let policy = setup
             .policy()
             .map_err(|source| RunError::Policy { policy_at: scenario.policy_at.clone(), source })?;
@@ -74,6 +74,7 @@ impl<W: Write> Lockstep<W> {
         bus.enable_tap();
         let config = EmulatorConfig {
             effects: overlay.effects(),
+            solver: *solver,
             mishaps: scenario.mishaps(),
             profile: scenario.profile,
             quirks: scenario.quirks,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use gateway::policy::{self, Policy, SpecError};
 use xt28_machine::Machine;
+use xt28_sim::Solver;
 use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
@@ -19,6 +20,8 @@ pub struct Setup {
     pub machine: Machine,
     /// What it has beyond the nominal one.
     pub overlay: Overlay,
+    /// What solves its rigid bodies.
+    pub solver: Solver,
     /// The ground.
     pub terrain: Terrain,
     /// The map of it that a policy is given, which need not be true.
@@ -41,7 +44,7 @@ impl Setup {
         let overlay = Overlay { entries: scenario.effects.clone() };
         let terrain = scenario.terrain.spec.build()?;
         let map = scenario.terrain.spec.build_map(&terrain)?;
-        Ok(Self { scenario, machine, overlay, terrain, map, seed })
+        Ok(Self { scenario, machine, overlay, solver: Solver::default(), terrain, map, seed })
     }
 
     /// The policy that drives.

@@ -121,6 +121,7 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
     let mut arguments = vec!["--bus".to_owned(), bus.to_owned()];
     let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
     add("--seed", setup.seed.to_string());
+    add("--solver", setup.solver.to_string());
     add("--truth", folder.join(TRUTH).display().to_string());
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());

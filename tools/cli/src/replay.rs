@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay as Run, Terrain};
 use xt28_machine::Machine;
+use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
 use crate::{Failure, Verdict};
@@ -26,6 +27,9 @@ pub(crate) struct Replay {
     /// Effects that our machine gets (TOML; see `xt28 effects`); the nominal machine without it
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
+    /// What solves the rigid bodies: `rapier`, the reference, or `reduced`, the fast core
+    #[arg(long, default_value_t, value_name = "NAME")]
+    solver: Solver,
     /// Terrain file (TOML); else as about.toml says, else flat
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
@@ -52,7 +56,7 @@ impl Replay {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let replay = Run::run(&log, &machine, &effects.effects(), &self.ground()?)?;
+        let replay = Run::run(&log, &machine, &effects.effects(), self.solver, &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {
             println!("{:#}", report.json());

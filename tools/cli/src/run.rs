@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup};
+use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
 use crate::artefacts::Artefacts;
@@ -23,6 +24,9 @@ pub(crate) struct Run {
     /// Effects that the machine gets beside the scenario's own (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
+    /// What solves the rigid bodies: `rapier`, the reference, or `reduced`, the fast core
+    #[arg(long, default_value_t, value_name = "NAME")]
+    solver: Solver,
     /// `virtual`, or a CAN interface such as vcan0, where emulator and gateway run as programs
     #[arg(long, default_value = VIRTUAL, value_name = "BUS")]
     bus: String,
@@ -49,6 +53,7 @@ impl Run {
             scenario: "straight-25m".to_owned(),
             seed: None,
             effects: None,
+            solver: Solver::default(),
             bus: VIRTUAL.to_owned(),
             realtime: false,
             record: None,
@@ -59,6 +64,7 @@ impl Run {
 
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         let mut setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
+        setup.solver = self.solver;
         if let Some(path) = &self.effects {
             setup.overlay.entries.extend(Overlay::load(path)?.entries);
         }

@@ -19,7 +19,7 @@ use std::time::Duration;
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use xt28_dbc::{Outbox, XT28_DBC};
 use xt28_machine::{Machine, PerWheel, SimTime};
-use xt28_sim::{Effects, Terrain};
+use xt28_sim::{Effects, Solver, Terrain};
 
 use crate::commands::{Command, Speaker, commands};
 use crate::comparison::rows;
@@ -40,7 +40,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Runs the commands of `log` on `machine` with `effects` on `terrain`. Twice the same gives
+    /// Runs the commands of `log` on `machine` with `effects`, solved by `solver`, on `terrain`. Twice the same gives
     /// twice the same.
     ///
     /// # Errors
@@ -49,6 +49,7 @@ impl Replay {
         log: &FieldLog,
         machine: &Machine,
         effects: &Effects,
+        solver: Solver,
         terrain: &Terrain,
     ) -> Result<Self, GapError> {
         let commands = commands(log, machine.drive.engine_speed_rpm)?;
@@ -60,6 +61,7 @@ impl Replay {
         let loads = PerWheel::from_fn(|wheel| first(Channel::CylinderLoad(wheel)));
         let config = EmulatorConfig {
             effects: effects.clone(),
+            solver,
             stroke_m,
             load_n: loads
                 .0

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay, Report};
 use xt28_machine::Machine;
-use xt28_sim::Effects;
+use xt28_sim::{Effects, Solver};
 
 /// The folder of the logs, `None` (and said so) where it is not there.
 fn logs() -> Option<PathBuf> {
@@ -31,7 +31,8 @@ fn replay(file: &str) -> Option<Report> {
     let folder = logs()?;
     let log = read(&folder, file);
     let terrain = About::terrain_of(&folder.join("about.toml"), Path::new(file)).unwrap();
-    let replay = Replay::run(&log, &Machine::xt28(), &Effects::default(), &terrain).unwrap();
+    let replay =
+        Replay::run(&log, &Machine::xt28(), &Effects::default(), Solver::Rapier, &terrain).unwrap();
     let report = replay.report(&log, &folder.join("xt28-field.dbc"));
     eprintln!("{}", report.table());
     assert_eq!(report.notes, Vec::<String>::new());

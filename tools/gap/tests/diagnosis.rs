@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals};
 use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay, Terrain};
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::Effects;
 use xt28_sim::effects::{Overlay, Scope};
+use xt28_sim::{Effects, Solver};
 
 #[allow(clippy::disallowed_macros)] // A test that skips says so.
 fn field_data() -> Option<PathBuf> {
@@ -70,7 +70,7 @@ fn fitted(effect: &str, scope: Scope, run: &str, overlay: &str) -> Option<(f64, 
     let (log, terrain) = log(&folder, run);
     let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
     let machine = Machine::xt28();
-    let replay = Replay::run(&log, &machine, &overlay.effects(), &terrain).unwrap();
+    let replay = Replay::run(&log, &machine, &overlay.effects(), Solver::Rapier, &terrain).unwrap();
     let mut series = replay.all_series().clone();
     for (channel, samples) in log.all_series() {
         if channel.is_command() {

@@ -220,8 +220,7 @@ mod tests {
 
     #[test]
     fn a_weak_engine_gives_no_more_than_it_has() {
-        let mut motion = Motion::default();
-        motion.wheel_rate_rad_s = PerWheel::splat(1.0);
+        let motion = Motion { wheel_rate_rad_s: PerWheel::splat(1.0), ..Motion::default() };
         let weak = after(|d| d.power_w = 6e3, 1.5, &motion, 500);
         assert!((weak.drive_nm.sum() - 6e3).abs() < 60.0, "{weak:?}");
     }
@@ -235,9 +234,11 @@ mod tests {
 
     #[test]
     fn rolling_drags_and_a_bad_bearing_bites_once_a_turn() {
-        let mut motion = Motion::default();
-        motion.wheel_rate_rad_s = PerWheel::splat(1.0);
-        motion.ground_force_n = PerWheel::splat(30e3);
+        let motion = Motion {
+            wheel_rate_rad_s: PerWheel::splat(1.0),
+            ground_force_n: PerWheel::splat(30e3),
+            ..Motion::default()
+        };
         let plain = after(|_| (), 1.0, &motion, 10).drag_nm[Wheel::Fl];
         assert!((plain + 0.02 * 30e3 * 0.74).abs() < 1.0, "{plain}");
         let bad = |d: &mut DriveTruth| d.binding_nm[Wheel::Fl] = 4e3;

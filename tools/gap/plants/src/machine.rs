@@ -158,7 +158,7 @@ impl<B: Bodies> Foreign<B> {
 
 impl Instant {
     /// A vector of the world along the front frame's axes.
-    pub(crate) fn into_frame(&self, v: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn in_frame(&self, v: [f64; 3]) -> [f64; 3] {
         self.axes.map(|axis| axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2])
     }
 

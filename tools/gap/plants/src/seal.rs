@@ -52,7 +52,17 @@ impl fmt::Display for Seal {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn no_text_panics_and_every_seal_reads_back(text in ".{0,70}", bytes: [u8; 32]) {
+            let _ = Seal::parse(&text);
+            prop_assert_eq!(Seal::parse(&Seal(bytes).to_string()), Some(Seal(bytes)));
+        }
+    }
 
     #[test]
     fn it_holds_for_these_answers_and_this_salt_alone() {

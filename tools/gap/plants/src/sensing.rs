@@ -85,7 +85,7 @@ impl Sensors {
             let gravity = if i == 2 { GRAVITY_M_S2 } else { 0.0 };
             (here.velocity_m_s[i] - before[i]) / TICK_S + gravity
         });
-        let into = |v: [f64; 3]| self::mounted(here.into_frame(v), truth.imu_tilt_rad);
+        let into = |v: [f64; 3]| self::mounted(here.in_frame(v), truth.imu_tilt_rad);
         let (rate, force) = (into(here.rate_rad_s), into(felt));
         Inertial {
             rate_deg_s: rate

@@ -122,7 +122,7 @@ mod tests {
         let report =
             ArmEcu::new(&truth).tick(&truth, &PerWheel::splat(250.0), &pins(0.25, [7e6, 5e5]));
         assert_eq!(report.load_dan[Wheel::Bl], (785.0_f64 * 7.0 - 589.0 * 0.5).trunc());
-        let ratio = f64::from(report.wheel_force_dan[Wheel::Bl]) / report.load_dan[Wheel::Bl];
+        let ratio = report.wheel_force_dan[Wheel::Bl] / report.load_dan[Wheel::Bl];
         assert!((ratio - 0.4991).abs() < 1e-3, "{ratio}");
     }
 }

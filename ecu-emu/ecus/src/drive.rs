@@ -206,7 +206,9 @@ impl DriveEcu {
         let active = demand.filter(|_| self.state == State::Active);
         let throttle = active.filter(|_| !braked).map_or(0.0, |d| d.throttle);
         let pump = self.drive(now, throttle, braked, &readings, out);
-        self.steer(active, &readings, out);
+        // Both joints wait while one of them may not be where its sensor says.
+        let steered = active.filter(|_| health == Health::Good);
+        self.steer(steered, &readings, out);
 
         out.can1.clear();
         out.can3.clear();

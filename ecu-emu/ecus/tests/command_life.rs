@@ -303,6 +303,23 @@ fn throttle_and_angle_become_currents() {
 }
 
 #[test]
+fn a_joint_in_doubt_is_held_while_the_machine_drives_on() {
+    let mut drive = Drive::new(1.0);
+    for tick in 0..20 {
+        if tick == 10 {
+            drive.pins.joint_front_mv = 5_000.0;
+        }
+        drive.send(50.0, 12.0, true);
+        assert_eq!(drive.tick().state, DriveStatusState::Active);
+        let out = &drive.out;
+        let front_ma = out.steer_front_a_ma + out.steer_front_b_ma;
+        let rear_ma = out.steer_rear_a_ma + out.steer_rear_b_ma;
+        assert_eq!([front_ma > 0.0, rear_ma > 0.0], [tick < 10; 2], "tick {tick}");
+        assert!(out.pump_ma[1] > 195.0);
+    }
+}
+
+#[test]
 fn wheel_speeds_carry_their_direction_in_our_frame_only() {
     let mut drive = Drive::new(-1.0);
     let status = drive.tick();

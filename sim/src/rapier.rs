@@ -8,3 +8,4 @@ mod shapes;
 mod tyre_contact;
 
 pub use bodies::RapierBodies;
+pub use tyre_contact::Tread;

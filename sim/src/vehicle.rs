@@ -69,6 +69,12 @@ impl<B: Bodies> Vehicle<B> {
         vehicle
     }
 
+    /// The solver of the rigid bodies, to be looked at.
+    #[must_use]
+    pub const fn bodies(&self) -> &B {
+        &self.bodies
+    }
+
     /// Writes the state that the motion shows; `before_m_s` was the front frame's velocity a step ago.
     ///
     /// Solvers move the machine in the ground's axes; what is true of it is said in the world's.

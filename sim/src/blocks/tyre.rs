@@ -1,5 +1,5 @@
-//! A tyre on the ground, near rigid or soft: a spring and damper that only push, and a patch that gives before it
-//! slides.
+//! A tyre on the ground, near rigid or soft: a spring and damper that only push, and a patch that gives
+//! before it slides.
 //!
 //! The carcass lets the tread be pushed aside from the rim by a vector d, the smallest that clears the
 //! ground at every point touched; its force is k d + c d'. Along the ground the patch is a brush:
@@ -20,6 +20,8 @@ pub const PATCHES_MAX: usize = 4;
 const BRISTLE_DAMPING: f64 = 0.5;
 /// Passes over the points touched; two points need one, four in a gully some more.
 const PASSES: usize = 12;
+/// Two patches of successive steps are one if their normals are this parallel.
+const SAME_PATCH: f64 = 0.95;
 
 /// The rigid wheel's dry friction, but for a give of a millimetre or two before it slides.
 const NEAR_RIGID: Brush =
@@ -39,6 +41,8 @@ pub struct Tyre {
 /// What one point of contact remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchState {
+    /// The ground's normal, out of the ground; by it the patch is known again.
+    pub normal: [f64; 3],
     /// Load, N.
     pub load_n: f64,
     /// Force along the ground on the tread: forward and to the left, N.
@@ -53,11 +57,15 @@ pub struct PatchState {
 
 impl PatchState {
     /// What there was before a point that is `input` now; one newly touched moved as it does.
-    fn or_new(self, input: &PatchInput) -> Self {
-        if self.load_n > 0.0 {
-            return self;
-        }
-        Self { depth_rate_m_s: input.depth_rate_m_s, slip_m_s: input.slip_m_s, ..Self::default() }
+    fn before(input: &PatchInput, patches: &[Self]) -> Self {
+        let likeness = |state: &Self| dot(state.normal, input.normal);
+        let nearest = patches.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        let known = nearest.filter(|state| likeness(state) > SAME_PATCH && state.load_n > 0.0);
+        known.copied().unwrap_or_else(|| Self {
+            depth_rate_m_s: input.depth_rate_m_s,
+            slip_m_s: input.slip_m_s,
+            ..Self::default()
+        })
     }
 }
 
@@ -94,12 +102,13 @@ impl Tyre {
         }
     }
 
-    /// The patches after `dt_s` s, `before` in the order of `inputs`.
+    /// The patches after `dt_s` s, in the order of `inputs`, at most [`PATCHES_MAX`]; those of the
+    /// step `before` in any order.
     #[must_use]
     pub fn step(&self, before: &[PatchState], inputs: &[PatchInput], dt_s: f64) -> Patches {
         let mut known = [PatchState::default(); PATCHES_MAX];
-        for ((own, state), input) in known.iter_mut().zip(before).zip(inputs) {
-            *own = state.or_new(input);
+        for (own, input) in known.iter_mut().zip(inputs) {
+            *own = PatchState::before(input, before);
         }
         let before = &known[..inputs.len()];
         let mut after = Patches::default();
@@ -141,7 +150,7 @@ impl Tyre {
     /// The patch under `load_n` after `dt_s` s.
     fn drag(&self, state: &PatchState, input: &PatchInput, load_n: f64, dt_s: f64) -> PatchState {
         if load_n <= 0.0 {
-            return PatchState::default();
+            return PatchState { normal: input.normal, ..PatchState::default() };
         }
         let stiffness = [self.brush.longitudinal_n_m, self.brush.lateral_n_m];
         let limit_n = self.friction * load_n;
@@ -167,6 +176,7 @@ impl Tyre {
             along_n = along_n.map(|n| n * limit_n / asked_n);
         }
         PatchState {
+            normal: input.normal,
             load_n,
             along_n,
             bristle_m,
@@ -287,7 +297,7 @@ mod tests {
                 rolling_m_s: 1.0,
                 ..PatchInput::default()
             };
-            let mut patch = PatchState { load_n: 4e4, ..PatchState::default() };
+            let mut patch = PatchState { normal: UP, load_n: 4e4, ..PatchState::default() };
             for _ in 0..(way_m / DT_S) as u32 {
                 patch = tyre.step(&[patch], &[input], DT_S).states()[0];
             }
@@ -306,7 +316,7 @@ mod tests {
         for brush in [brush(), stiff] {
             let tyre = tyre(8e6, 6e4, brush);
             let (mass_kg, push_n) = (800.0, 1e4);
-            let mut patch = PatchState { load_n: 4e4, ..PatchState::default() };
+            let mut patch = PatchState { normal: UP, load_n: 4e4, ..PatchState::default() };
             let (mut x, mut v) = (0.0, 0.0);
             for _ in 0..2000 {
                 let input = PatchInput {

@@ -9,7 +9,7 @@ use xt28_machine::{PerWheel, Wheel};
 use super::hull_watch::HullWatch;
 use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
 use super::shapes::Ground;
-use super::tyre_contact::{Rim, TyreContact};
+use super::tyre_contact::{Rim, Tread, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
@@ -192,6 +192,12 @@ impl Clone for RapierBodies {
 }
 
 impl RapierBodies {
+    /// How a wheel met the ground at the start of the last step, where its force comes from.
+    #[must_use]
+    pub fn tread(&self, wheel: Wheel) -> &Tread {
+        self.tyres[wheel].tread()
+    }
+
     fn set_springs(&mut self, loads: &Loads) {
         if let Some((hinge, law)) = self.roll {
             let spring = roll_spring(&law, self.hinge_motion(hinge).angle_rad);

@@ -10,14 +10,12 @@ use xt28_terrain::Nearest;
 
 use super::insert::vector;
 use crate::Terrain;
-use crate::blocks::{PATCHES_MAX, PatchInput, PatchState, Tyre};
+use crate::blocks::{PATCHES_MAX, PatchInput, Patches, Tyre};
 use crate::parts::Parts;
 
 /// Share of the deflection by which the radius is smaller that the wheel rolls on and that forces along
 /// the ground have as lever: between the third of a radial tyre and the whole of a rigid band.
 const RADIUS_SHARE: f64 = 0.5;
-/// Two patches of successive steps are one if their normals are this parallel.
-const SAME_PATCH: f64 = 0.95;
 
 /// Where a wheel is and how it moves, in the world.
 pub(super) struct Rim {
@@ -29,14 +27,41 @@ pub(super) struct Rim {
     pub(super) velocities: [Vector; 2],
 }
 
+/// How a wheel's tread met the ground: what the tyre's block was fed, in the ground's axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tread {
+    /// The axle, to the left. Forward along the ground is the axle crossed with a patch's normal.
+    pub axle: [f64; 3],
+    inputs: [PatchInput; PATCHES_MAX],
+    count: usize,
+}
+
+impl Tread {
+    /// Each point that touched or was about to.
+    #[must_use]
+    pub fn patches(&self) -> &[PatchInput] {
+        &self.inputs[..self.count]
+    }
+
+    fn new(axle: Vector, met: &[Patch]) -> Self {
+        let mut tread =
+            Self { axle: axle.to_array().map(f64::from), count: met.len(), ..Self::default() };
+        for (input, patch) in tread.inputs.iter_mut().zip(met) {
+            *input = patch.input;
+        }
+        tread
+    }
+}
+
 /// One wheel's tyre and where it touches.
 #[derive(Clone, Debug)]
 pub(super) struct TyreContact {
     tyre: Tyre,
     radius_m: f64,
     slip: f64,
-    patches: [([f64; 3], PatchState); PATCHES_MAX],
-    count: usize,
+    /// Where it touched before the last step, and what it remembers of that.
+    tread: Tread,
+    patches: Patches,
 }
 
 impl TyreContact {
@@ -48,9 +73,14 @@ impl TyreContact {
             tyre: Tyre::new(part, [rim.mass_kg, turns_kg]),
             radius_m: parts.radius_m,
             slip: part.slip,
-            patches: [([0.0; 3], PatchState::default()); PATCHES_MAX],
-            count: 0,
+            tread: Tread::default(),
+            patches: Patches::default(),
         }
+    }
+
+    /// How the tread met the ground when it was last pushed.
+    pub(super) const fn tread(&self) -> &Tread {
+        &self.tread
     }
 
     /// Steps the tyre from where its wheel is now. Gives force and torque on the wheel for the
@@ -58,13 +88,10 @@ impl TyreContact {
     pub(super) fn push(&mut self, rim: &Rim, terrain: &Terrain, dt_s: f64) -> [Vector; 2] {
         let minima = terrain.nearest(rim.centre.to_array().map(f64::from), self.radius_m);
         let met: Vec<Patch> = minima.points().iter().map(|near| self.meet(rim, near)).collect();
-        let before: Vec<PatchState> = met.iter().map(|patch| self.known(patch)).collect();
-        let inputs: Vec<PatchInput> = met.iter().map(|patch| patch.input).collect();
-        let after = self.tyre.step(&before, &inputs, dt_s);
-        self.count = met.len();
+        self.tread = Tread::new(rim.axle, &met);
+        self.patches = self.tyre.step(self.patches.states(), self.tread.patches(), dt_s);
         let [mut force, mut torque] = [Vector::ZERO; 2];
-        for (i, (patch, state)) in met.iter().zip(after.states()).enumerate() {
-            self.patches[i] = (patch.input.normal, *state);
+        for (patch, state) in met.iter().zip(self.patches.states()) {
             let push = patch.normal * narrow(state.load_n)
                 + patch.forward * narrow(state.along_n[0])
                 + patch.left * narrow(state.along_n[1]);
@@ -96,16 +123,6 @@ impl TyreContact {
             rolling_m_s,
         };
         Patch { lever, normal, forward, left, input }
-    }
-
-    /// What a patch remembers from the last step, if it was there.
-    fn known(&self, patch: &Patch) -> PatchState {
-        let along = |(normal, _): &&([f64; 3], PatchState)| {
-            normal.iter().zip(patch.input.normal).map(|(a, b)| a * b).sum::<f64>()
-        };
-        let nearest = self.patches[..self.count].iter().map(|known| (along(&known), known.1));
-        let best = nearest.max_by(|a, b| a.0.total_cmp(&b.0));
-        best.filter(|(along, _)| *along > SAME_PATCH).map(|(_, state)| state).unwrap_or_default()
     }
 }
 

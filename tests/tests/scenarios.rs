@@ -4,6 +4,7 @@ use std::io;
 use std::time::Duration;
 
 use xt28_machine::SimTime;
+use xt28_sim::Solver;
 use xt28_scenarios::{Finding, Lockstep, Recording, Report, Scenario, Setup};
 
 fn setup(name: &str) -> Setup {
@@ -16,8 +17,8 @@ fn run(setup: &Setup, log: impl io::Write) -> Recording {
     run.finish().unwrap()
 }
 
-fn holds(name: &str) -> Report {
-    let setup = setup(name);
+fn holds(name: &str, solver: Solver) -> Report {
+    let setup = Setup { solver, ..setup(name) };
     let report = run(&setup, io::sink()).report(&setup, "virtual");
     assert!(report.passed(), "\n{}", report.table());
     report
@@ -25,7 +26,13 @@ fn holds(name: &str) -> Report {
 
 macro_rules! scenarios {
     ($($test:ident: $name:literal),* $(,)?) => {
-        $(#[test] fn $test() { holds($name); })*
+        $(#[test] fn $test() { holds($name, Solver::Rapier); })*
+
+        mod on_the_fast_core {
+            use super::*;
+
+            $(#[test] fn $test() { holds($name, Solver::Reduced); })*
+        }
 
         #[test]
         fn no_scenario_is_left_out() {

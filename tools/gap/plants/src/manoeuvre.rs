@@ -271,14 +271,14 @@ impl Draw<'_> {
         let mut at_s = 3.0;
         while at_s < 29.0 {
             let wheel = Wheel::ALL[self.random.random_range(0..6)];
-            let sign = if strokes[wheel] > 186.0
-                || (strokes[wheel] > 146.0 && self.random.random_bool(0.5))
+            let sign = if strokes[wheel] > 182.0
+                || (strokes[wheel] > 158.0 && self.random.random_bool(0.5))
             {
                 -1.0
             } else {
                 1.0
             };
-            strokes[wheel] = even(strokes[wheel] + sign * self.one(14.0, 24.0));
+            strokes[wheel] = even(strokes[wheel] + sign * self.one(10.0, 18.0));
             script.steps.push(((at_s * 100.0_f64).round() / 100.0, strokes));
             at_s += self.one(0.2, 0.9);
         }

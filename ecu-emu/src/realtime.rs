@@ -92,11 +92,6 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     config.mishaps.faults.extend(&args.sensor_fault);
     config.solver = args.solver;
     config.profile = args.profile;
-    if args.profile == Profile::Firmware2016 && !config.mishaps.events.is_empty() {
-        return Err("--mishaps: events of the supply are for the paper's profile; \
-                    leave out [[event]] with --profile 2016"
-            .into());
-    }
     if args.profile == Profile::Paper && (args.operator.is_some() || !args.quirks.is_empty()) {
         return Err("--operator and --quirk are for the firmware of 2016; \
                     give --profile 2016 too"

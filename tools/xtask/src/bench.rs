@@ -39,12 +39,22 @@ impl Bench {
         if !build.success() {
             return Err("cargo could not build xt28".into());
         }
+        println!("scenario            {}, quickest of {} runs", self.scenario, self.runs);
+        let mut repeats = true;
+        for solver in ["rapier", "reduced"] {
+            repeats &= self.measure(workspace, solver)?;
+        }
+        Ok(u8::from(!repeats))
+    }
+
+    /// Measures and prints one solver's figures; whether all its runs logged the same bytes.
+    fn measure(&self, workspace: &Workspace, solver: &str) -> Outcome<bool> {
         let folder = tempfile::tempdir()?;
         let mut best: Option<Figures> = None;
         let mut logs = Vec::new();
         for run in 0..self.runs {
             let log = folder.path().join(format!("{run}.log"));
-            let figures = self.run(workspace, &log)?;
+            let figures = self.run(workspace, solver, &log)?;
             if best.as_ref().is_none_or(|best| figures.wall_s < best.wall_s) {
                 best = Some(figures);
             }
@@ -53,16 +63,16 @@ impl Bench {
         let best = best.ok_or("no run")?;
         let repeats = logs.windows(2).all(|pair| pair[0] == pair[1]);
         let factor = best.simulated_s / best.wall_s;
-        println!("scenario            {}, quickest of {} runs", self.scenario, self.runs);
+        println!("solver              {solver}");
         println!("simulated           {:.2} s", best.simulated_s);
         println!("wall, one core      {:.3} s", best.wall_s);
         println!("real-time factor    {factor:.1}");
         println!("physics step        {:.1} us", best.physics_step_us);
         println!("same log every run  {}", if repeats { "yes" } else { "NO" });
-        Ok(u8::from(!repeats))
+        Ok(repeats)
     }
 
-    fn run(&self, workspace: &Workspace, log: &std::path::Path) -> Outcome<Figures> {
+    fn run(&self, workspace: &Workspace, solver: &str, log: &std::path::Path) -> Outcome<Figures> {
         let program = workspace.target.join("release").join("xt28");
         // Pinned where the system can: the figure is for one core.
         let pinned = Command::new("taskset").arg("--version").output().is_ok();
@@ -71,7 +81,7 @@ impl Bench {
             command.args(["--cpu-list", "0"]).arg(&program);
         }
         let run = command
-            .args(["run", &self.scenario, "--json", "--record"])
+            .args(["run", &self.scenario, "--solver", solver, "--json", "--record"])
             .arg(log)
             .output()
             .map_err(|error| format!("{}: {error}", program.display()))?;

@@ -28,7 +28,7 @@ use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search};
 use self::tree::Tree;
-use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion};
+use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
 /// Stiffness of the roll hinge's stops, Nm/rad (assumed): the machine's weight on one side's wheels
@@ -109,6 +109,33 @@ impl Bodies for ReducedBodies {
         self.state.advance(dt_s);
         self.note_forces(&contacts, dt_s);
         self.contacts = contacts;
+    }
+}
+
+impl Placed for ReducedBodies {
+    /// What no motion tells is as in a machine that stands on level ground: no roll in the roll hinge.
+    fn place(&mut self, motion: &Motion) {
+        let [x, y, z] = motion.axes.map(DVec3::from);
+        let s = &mut self.state;
+        s.position = motion.position_m.into();
+        s.turn = DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize();
+        s.joint_rad = motion.joint.map(|joint| joint.angle_rad);
+        s.roll_rad = 0.0;
+        s.arm_rad = motion.arm.map(|arm| arm.angle_rad).0;
+        let turning = DVec3::from(motion.rate_rad_s);
+        let com = s.turn * self.tree.frames[0].com;
+        // The twist is about the origin, the motion's velocity that of the centre of mass.
+        let moving = DVec3::from(motion.velocity_m_s) - turning.cross(com);
+        s.rate = [0.0; FREEDOMS];
+        s.rate[..6].copy_from_slice(&spatial::join(turning, moving));
+        for i in 0..2 {
+            s.rate[JOINTS + i] = motion.joint[i].rate_rad_s;
+        }
+        for i in 0..6 {
+            s.rate[ARMS + i] = motion.arm.0[i].rate_rad_s;
+            s.rate[WHEELS + i] = motion.wheel_rate_rad_s.0[i];
+        }
+        self.search.look_again();
     }
 }
 

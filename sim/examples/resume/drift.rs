@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{
-    Actuation, Effects, Plant, Ramp, RapierBodies, STEP, Terrain, Vehicle, VehicleState,
+    Actuation, Bodies, Effects, Placed, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState,
 };
 
 /// Largest distances over a while.
@@ -42,10 +42,11 @@ fn actuation(t_s: f64) -> Actuation {
 }
 
 /// The vehicle after `at_s` s of driving, and its ground.
-pub(crate) fn drive(at_s: f64) -> (Vehicle<RapierBodies>, Terrain) {
+pub(crate) fn drive<B: Bodies>(at_s: f64) -> (Vehicle<B>, Terrain) {
     let ramp = Ramp { x_m: [1.0, 3.0, 5.0, 7.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
     let terrain = Terrain::ramp(&ramp);
-    let mut vehicle = Vehicle::new(&Machine::xt28(), &terrain, PerWheel::splat(0.17));
+    let (machine, effects) = (Machine::xt28(), Effects::default());
+    let mut vehicle = Vehicle::with(&machine, &effects, &terrain, PerWheel::splat(0.17), STEP);
     let steps = (at_s / STEP.as_secs_f64()).round() as u32;
     (0..steps).for_each(|step| vehicle.step(&actuation(seconds(step))));
     (vehicle, terrain)
@@ -57,9 +58,9 @@ fn seconds(step: u32) -> f64 {
 
 impl Drift {
     /// Resumed from the state at `at_s`, and both driven on.
-    pub(crate) fn of(at_s: f64, warm: Duration) -> Self {
-        let (mut vehicle, terrain) = drive(at_s);
-        let mut resumed = Self::resumed(vehicle.state(), &terrain, at_s, warm);
+    pub(crate) fn of<B: Placed>(at_s: f64, warm: Duration) -> Self {
+        let (mut vehicle, terrain) = drive::<B>(at_s);
+        let mut resumed: Vehicle<B> = Self::resumed(vehicle.state(), &terrain, at_s, warm);
         let (mut drift, mut seen) = (Self::default(), Distance::default());
         for step in 0..1000 {
             let now = actuation(at_s + seconds(step));
@@ -75,12 +76,12 @@ impl Drift {
     }
 
     /// A vehicle taken up at `measured`, `at_s` s after the start.
-    pub(crate) fn resumed(
+    pub(crate) fn resumed<B: Placed>(
         measured: &VehicleState,
         terrain: &Terrain,
         at_s: f64,
         warm: Duration,
-    ) -> Vehicle<RapierBodies> {
+    ) -> Vehicle<B> {
         let (machine, effects) = (Machine::xt28(), Effects::default());
         let now = actuation(at_s);
         Vehicle::from_measured(&machine, &effects, terrain, STEP, measured, &now, warm)

@@ -44,6 +44,11 @@ impl Search {
         Self { terrain, clear_m: [0.0; 3], stuck: [false; 6] }
     }
 
+    /// Forgets how far the hull was from the ground: the machine has been put elsewhere.
+    pub(super) const fn look_again(&mut self) {
+        self.clear_m = [0.0; 3];
+    }
+
     /// Fills `found` with the contacts that may make a force within this step.
     pub(super) fn contacts(
         &mut self,

@@ -19,10 +19,12 @@ impl<B: Placed> Vehicle<B> {
     /// Tyres are pressed in and strain along the ground by standing still in this motion for `warm`.
     ///
     /// Not a snapshot (that is a clone), but near one: on a ramp, in a bend, with all arms moving, and
-    /// 50 ms of `warm`, the largest distances over 5 s are 0.6 mm of stroke, 0.8 mrad of roll and
-    /// pitch, 18 mm of position and 9 mrad of a joint, nearly all of that in the first moment, when
-    /// the joints take up the scrub. Longer `warm` betters nothing; none at all makes wheels start
-    /// with 0.25 rad/s of error. `cargo run --release -p xt28-sim --example resume` prints the table.
+    /// 50 ms of `warm`, the largest distances over 5 s are on rapier3d 0.6 mm of stroke, 0.8 mrad of
+    /// roll and pitch, 18 mm of position and 9 mrad of a joint; on the fast core 0.5 mm, 0.7 mrad,
+    /// 22 mm and 9 mrad. Nearly all of that comes in the first moment, when the joints take up the
+    /// scrub. Longer `warm` betters nothing; without any, wheels on rapier3d start with 0.25 rad/s of
+    /// error. The fast core's rigid wheels remember nothing and need none.
+    /// `cargo run --release -p xt28-sim --example resume` prints the table.
     #[must_use]
     pub fn from_measured(
         machine: &Machine,

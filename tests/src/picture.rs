@@ -63,10 +63,13 @@ impl Picture<'_> {
         svg.text([MARGIN, 46.0], "title", Anchor::Start, &s.title);
         let passed = self.findings.iter().filter(|finding| finding.passed()).count();
         let ground = &s.terrain;
+        // A script is named after its scenario: its name says nothing more, and takes the line's room.
+        let policy = s.policy.split_once(':').map_or(s.policy.as_str(), |(kind, rest)| {
+            if kind == "script" || rest.is_empty() { kind } else { &s.policy }
+        });
         let line = format!(
-            "{} · policy {} · {ground} · seed {} · {} s · {passed} of {} expectations hold",
+            "{} · {policy} · {ground} · seed {} · {} s · {passed} of {} expectations hold",
             s.name,
-            s.policy,
             self.seed,
             s.duration_s,
             self.findings.len()

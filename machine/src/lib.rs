@@ -6,6 +6,7 @@
 mod levelling;
 mod linkage;
 mod numbers;
+mod range;
 mod time;
 mod wheel;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::{Levelling, Linkage, Wheel};
+use crate::{Levelling, Linkage, Wheel, range};
 
 /// The numbers of one machine. Units are in the field names; sources stand in `xt28.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -52,7 +52,7 @@ pub enum MachineError {
         /// The file.
         path: PathBuf,
         /// Section and key.
-        key: &'static str,
+        key: String,
         /// The value found.
         value: f64,
         /// What it must be.
@@ -258,6 +258,10 @@ impl Machine {
             line: error.span().map_or(1, |span| line_of(text, span.start)),
             problem: error.message().replace('\n', " "),
         })?;
+        if let Some((key, value)) = range::beyond_all_machines(text) {
+            let must = "it must be finite, and no further from zero than 1e9";
+            return Err(MachineError::Range { path: path.to_owned(), key, value, must });
+        }
         machine.check(path)?;
         Ok(machine)
     }
@@ -309,36 +313,9 @@ impl Machine {
             let found = [&self.wheels.circuit_1[..], &self.wheels.circuit_2[..]].concat().join(" ");
             return Err(MachineError::Circuits { path: path.to_owned(), found });
         }
-        let positive = [
-            ("masses.front_frame_kg", self.masses.front_frame_kg),
-            ("masses.middle_frame_kg", self.masses.middle_frame_kg),
-            ("masses.rear_frame_kg", self.masses.rear_frame_kg),
-            ("masses.arm_kg", self.masses.arm_kg),
-            ("masses.wheel_kg", self.masses.wheel_kg),
-            ("wheels.radius_m", self.wheels.radius_m),
-            ("wheels.track_m", self.wheels.track_m),
-            ("arms.closed_length_m", self.arms.closed_length_m),
-            ("arms.stroke_max_m", self.arms.stroke_max_m),
-            ("arms.area_bore_m2", self.arms.area_bore_m2),
-            ("arms.area_rod_m2", self.arms.area_rod_m2),
-            ("vehicle.tyre_stiffness_n_m", self.vehicle.tyre_stiffness_n_m),
-            ("vehicle.tyre_damping_n_s_m", self.vehicle.tyre_damping_n_s_m),
-            ("vehicle.tyre_longitudinal_n_m", self.vehicle.tyre_longitudinal_n_m),
-            ("vehicle.tyre_lateral_n_m", self.vehicle.tyre_lateral_n_m),
-            ("vehicle.tyre_relaxation_m", self.vehicle.tyre_relaxation_m),
-            ("hydraulics.speed_full_m_s", self.hydraulics.speed_full_m_s),
-            ("hydraulics.lock_stiffness_n_m", self.hydraulics.lock_stiffness_n_m),
-            ("drive.speed_full_m_s", self.drive.speed_full_m_s),
-            ("drive.speed_time_constant_s", self.drive.speed_time_constant_s),
-            ("sensors.gnss_rate_hz", self.sensors.gnss_rate_hz),
-        ];
-        for (key, value) in positive {
-            if !(value.is_finite() && value > 0.0) {
-                let must = "it must be finite and above zero";
-                return Err(MachineError::Range { path: path.to_owned(), key, value, must });
-            }
-        }
-        if let Some((key, value, must)) = self.levelling.fault() {
+        let fault = range::too_low(self).or_else(|| self.levelling.fault());
+        if let Some((key, value, must)) = fault {
+            let key = key.to_owned();
             return Err(MachineError::Range { path: path.to_owned(), key, value, must });
         }
         Ok(())

@@ -4,8 +4,8 @@ use std::io;
 use std::time::Duration;
 
 use xt28_machine::SimTime;
-use xt28_sim::Solver;
 use xt28_scenarios::{Finding, Lockstep, Recording, Report, Scenario, Setup};
+use xt28_sim::Solver;
 
 fn setup(name: &str) -> Setup {
     Setup::new(Scenario::find(name).unwrap(), None).unwrap()

@@ -39,7 +39,7 @@ impl VcanScenarios {
 /// One run of `xt28` on vcan0.
 struct Check {
     scenario: &'static str,
-    /// Name of its log, below `target/vcan-scenarios`.
+    /// Name of its log, without `.log`, below `target/vcan-scenarios`.
     log: &'static str,
     virtual_time: bool,
     /// The log of an earlier check that this one has to repeat byte for byte.
@@ -47,28 +47,21 @@ struct Check {
 }
 
 const CHECKS: &[Check] = &[
-    Check { scenario: "straight-25m", log: "straight-25m.log", virtual_time: true, repeats: None },
-    Check { scenario: "command-loss", log: "command-loss.log", virtual_time: true, repeats: None },
-    Check { scenario: "brown-out", log: "brown-out.log", virtual_time: true, repeats: None },
-    Check {
-        scenario: "command-loss",
-        log: "command-loss-again.log",
-        virtual_time: true,
-        repeats: Some("command-loss.log"),
-    },
-    Check {
-        scenario: "command-loss",
-        log: "command-loss-real-time.log",
-        virtual_time: false,
-        repeats: None,
-    },
-    Check {
-        scenario: "2016-cross-slope",
-        log: "2016-cross-slope.log",
-        virtual_time: true,
-        repeats: None,
-    },
+    exact("straight-25m"),
+    exact("command-loss"),
+    exact("brown-out"),
+    exact("arm-step-response"),
+    exact("cross-slope"),
+    exact("kerb"),
+    exact("2016-cross-slope"),
+    Check { log: "command-loss-again", repeats: Some("command-loss"), ..exact("command-loss") },
+    Check { log: "command-loss-real-time", virtual_time: false, ..exact("command-loss") },
 ];
+
+/// In virtual time, where nothing is late and every figure is exact.
+const fn exact(scenario: &'static str) -> Check {
+    Check { scenario, log: scenario, virtual_time: true, repeats: None }
+}
 
 /// A test program that uses a real bus where `XT28_VCAN` names one.
 struct Test {
@@ -112,7 +105,7 @@ pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Report {
     };
     let mut report = Report::default();
     for check in CHECKS {
-        let name = format!("vcan {}", check.log.trim_end_matches(".log"));
+        let name = format!("vcan {}", check.log);
         let outcome = bench.check(check);
         report.tally += Tally::one(outcome.is_ok());
         match outcome {
@@ -170,7 +163,7 @@ impl Bench {
     fn check(&self, check: &Check) -> Outcome<()> {
         let time = if check.virtual_time { "in virtual time" } else { "in real time" };
         println!("--- {} on vcan0, {time}", check.scenario);
-        let log = self.logs.join(check.log);
+        let log = self.logs.join(format!("{}.log", check.log));
         let mut run = self.vcan(options(check.virtual_time));
         run.arg(&self.xt28).args(["run", check.scenario, "--bus", "vcan0", "--record"]).arg(&log);
         let status = run.status()?;
@@ -183,7 +176,7 @@ impl Bench {
             return Err("candump logged nothing".into());
         }
         let Some(earlier) = check.repeats else { return Ok(()) };
-        same(&fs::read(self.logs.join(earlier))?, &logged)
+        same(&fs::read(self.logs.join(format!("{earlier}.log")))?, &logged)
     }
 }
 

@@ -40,6 +40,9 @@ impl<B: Bodies> Vehicle<B> {
     /// `stroke_m`, stepped every `step`.
     ///
     /// The arms start near their load, so the machine settles within about a second.
+    ///
+    /// Steps longer than [`STEP`] are for the fast core: the reference takes its tyres as forces of the
+    /// step's start, and at 120 Hz is some centimetres off (docs/second-engine.md).
     #[must_use]
     pub fn with(
         machine: &Machine,

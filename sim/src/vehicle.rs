@@ -41,8 +41,7 @@ impl<B: Bodies> Vehicle<B> {
     ///
     /// The arms start near their load, so the machine settles within about a second.
     ///
-    /// Steps longer than [`STEP`] are for the fast core: the reference takes its tyres as forces of the
-    /// step's start, and at 120 Hz is some centimetres off (docs/second-engine.md).
+    /// The reference makes steps longer than [`STEP`] of several; the fast core takes them whole.
     #[must_use]
     pub fn with(
         machine: &Machine,

@@ -13,6 +13,9 @@ use super::tyre_contact::{Rim, Tread, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
+/// Longest step of the engine, s. The tyres act as forces of a step's start; at 120 Hz that was 8 cm off
+/// in ten seconds, and at 60 Hz wrong. Longer steps are made of several.
+const LONGEST_S: f64 = 0.005;
 /// Index of a hinge's own angle among a joint's six coordinates.
 const HINGE: usize = 3;
 
@@ -112,19 +115,14 @@ impl Bodies for RapierBodies {
 
     #[allow(clippy::cast_possible_truncation)]
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
-        self.set_springs(loads);
-        self.set_wheel_torques(loads);
-        for hull in &mut self.hulls {
-            hull.look(&mut self.world, &self.terrain, dt_s);
+        let parts = (dt_s / LONGEST_S).ceil().max(1.0);
+        let mut ground_force_n = PerWheel::splat(0.0);
+        for _ in 0..parts as u32 {
+            self.sub_step(loads, dt_s / parts);
+            ground_force_n =
+                PerWheel::from_fn(|w| ground_force_n[w] + self.ground_force_n[w] / parts);
         }
-        self.push_tyres(dt_s);
-        self.world.integration_parameters.dt = dt_s as Real;
-        self.world.step();
-        let push_n = |hull: &HullWatch| {
-            let push_n = self.ground_push_n(hull.collider(), dt_s);
-            push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
-        };
-        self.chassis_force_n = self.hulls.iter().map(push_n).sum();
+        self.ground_force_n = ground_force_n;
     }
 }
 
@@ -192,6 +190,24 @@ impl Clone for RapierBodies {
 }
 
 impl RapierBodies {
+    /// One step of the engine.
+    #[allow(clippy::cast_possible_truncation)]
+    fn sub_step(&mut self, loads: &Loads, dt_s: f64) {
+        self.set_springs(loads);
+        self.set_wheel_torques(loads);
+        for hull in &mut self.hulls {
+            hull.look(&mut self.world, &self.terrain, dt_s);
+        }
+        self.push_tyres(dt_s);
+        self.world.integration_parameters.dt = dt_s as Real;
+        self.world.step();
+        let push_n = |hull: &HullWatch| {
+            let push_n = self.ground_push_n(hull.collider(), dt_s);
+            push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
+        };
+        self.chassis_force_n = self.hulls.iter().map(push_n).sum();
+    }
+
     /// How a wheel met the ground at the start of the last step, where its force comes from.
     #[must_use]
     pub fn tread(&self, wheel: Wheel) -> &Tread {

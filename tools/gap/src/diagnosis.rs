@@ -10,18 +10,26 @@
 
 mod arms;
 mod controllers;
+mod diagnose;
 mod driving;
 mod evidence;
 mod generator;
 mod hypothesis;
+mod inquiry;
 mod joints;
 mod knob;
 mod signals;
 mod stance;
 mod travel;
+mod verdict;
 
+pub use diagnose::Progress;
 pub use evidence::Evidence;
 pub use generator::{Floor, Generator, Residual, Signal};
 pub use hypothesis::{Fit, Hypothesis};
+pub use inquiry::{FieldRun, Inquiry};
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub use signals::{DT_S, Samples, Signals};
+pub use verdict::{
+    Beginning, Cause, Diagnosis, Estimate, Next, NotTestable, Place, Shrink, Together, Verdict,
+};

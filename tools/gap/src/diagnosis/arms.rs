@@ -41,9 +41,11 @@ pub(super) fn stroke_error_m(
                 // The valve remembers; only the oil is taken up anew.
                 state.cylinder = arm.resumed(&input, DT_S).cylinder;
             }
-            let force = arm.step(&mut state, &input, 1.0, DT_S);
-            let seen_n = seen.step(force.force_n, PRESSURE_FILTER_S, DT_S);
-            scale * (seen_n - load[i]) / force.stiffness_n_m
+            arm.step(&mut state, &input, 1.0, DT_S);
+            // Pressures tell the force of the oil: what the seals hold is not among it.
+            let oil_n = arm.oil_force_n(&state, &motion);
+            let seen_n = seen.step(oil_n, PRESSURE_FILTER_S, DT_S);
+            scale * (seen_n - load[i]) / machine.hydraulics.lock_stiffness_n_m
         })
         .collect()
 }

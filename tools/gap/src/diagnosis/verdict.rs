@@ -1,0 +1,165 @@
+//! What a diagnosis says: where the gap is, what causes it, how far it shrinks, what would tell more.
+
+use serde::{Serialize, Serializer};
+use xt28_sim::effects::{Block, Effect, Scope};
+
+/// The whole answer to one machine's logs. Serialises to the form of `--json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// In one word.
+    pub verdict: Verdict,
+    /// Blocks on measured inputs, the largest gap first.
+    #[serde(rename = "where")]
+    pub places: Vec<Place>,
+    /// Causes, the likeliest first. Those with a probability above one half are stood by.
+    pub causes: Vec<Cause>,
+    /// Probability that nothing is wrong beyond ordinary tolerances.
+    pub probability_none: f64,
+    /// Probability that what is wrong is not in the catalogue.
+    pub probability_unknown: f64,
+    /// All causes stood by, at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub together: Option<Together>,
+    /// Manoeuvre that would tell the most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<Next>,
+    /// Effects that these logs cannot show, each with the manoeuvre that would.
+    pub not_testable: Vec<NotTestable>,
+    /// What was taken for granted, and what was odd about the logs; whole sentences.
+    pub notes: Vec<String>,
+    /// Wall time of the diagnosis, s; set by who holds the clock.
+    pub seconds: f64,
+}
+
+/// A diagnosis in one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// One or two effects of the catalogue.
+    Effect,
+    /// Nothing beyond ordinary tolerances.
+    None,
+    /// Something, but nothing in the catalogue.
+    Unknown,
+}
+
+/// One block on measured inputs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Place {
+    /// The block.
+    #[serde(serialize_with = "as_text")]
+    pub block: Block,
+    /// Its wheels.
+    #[serde(serialize_with = "as_text")]
+    pub scope: Scope,
+    /// The signal that is compared.
+    pub residual: String,
+    /// Root mean square of what ordinary tolerances leave, in units of the noise floor.
+    pub gap_over_noise: f64,
+    /// Share of the whole machine's gap that it carries, 0 to 1.
+    pub share: f64,
+}
+
+/// One cause at one scope.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cause {
+    /// The effect.
+    #[serde(serialize_with = "name_of")]
+    pub effect: &'static Effect,
+    /// Its wheels.
+    #[serde(serialize_with = "as_text")]
+    pub scope: Scope,
+    /// Calibrated, 0 to 1.
+    pub probability: f64,
+    /// Each parameter with its interval.
+    #[serde(serialize_with = "by_name")]
+    pub parameters: Vec<Estimate>,
+    /// Names of the effects that these logs cannot tell from this one, itself first.
+    pub class: Vec<&'static str>,
+    /// When it began, where not before the logs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub begins: Option<Beginning>,
+    /// How far the gap shrinks on runs that were not fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shrink: Option<Shrink>,
+}
+
+/// One parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Name with its unit, as in overlays.
+    pub name: &'static str,
+    /// Best value, and the ends of the 90 % interval.
+    pub value: [f64; 3],
+}
+
+/// An effect that set in while one was looking.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Beginning {
+    /// Name of the run.
+    pub run: String,
+    /// Instant in it, s.
+    pub at_s: f64,
+}
+
+/// Share of the gap that goes once an effect is in the simulator: 1 is all of it, below 0 is worse.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Shrink {
+    /// Blocks on measured inputs, a tenth of a second ahead.
+    pub one_step: f64,
+    /// The whole machine over 5 s from measured states.
+    pub five_s: f64,
+    /// The whole machine over whole runs.
+    pub run: f64,
+    /// 90 % bootstrap intervals of the three.
+    pub interval: [[f64; 2]; 3],
+}
+
+/// All causes at once.
+#[derive(Clone, Debug, Serialize)]
+pub struct Together {
+    /// Names.
+    pub effects: Vec<&'static str>,
+    /// How far the gap shrinks with all of them.
+    pub shrink: Shrink,
+    /// How far a free model of the residuals without physics, fitted on the same runs, shrinks it.
+    pub black_box: Shrink,
+    /// Runs that were not fitted.
+    pub held_out_runs: Vec<String>,
+}
+
+/// A test drive worth making.
+#[derive(Clone, Debug, Serialize)]
+pub struct Next {
+    /// Name of the scripted manoeuvre.
+    pub manoeuvre: String,
+    /// Effects that it tells apart.
+    pub separates: Vec<&'static str>,
+    /// How well: expected logarithm of the odds, nats.
+    pub nats: f64,
+}
+
+/// An effect that stays in the dark.
+#[derive(Clone, Debug, Serialize)]
+pub struct NotTestable {
+    /// The effect.
+    #[serde(serialize_with = "name_of")]
+    pub effect: &'static Effect,
+    /// What the logs lack.
+    pub lacks: String,
+    /// Scripted manoeuvre that would show it.
+    pub manoeuvre: String,
+}
+
+fn as_text<T: ToString, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&value.to_string())
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // The shape that serde asks for.
+fn name_of<S: Serializer>(effect: &&'static Effect, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(effect.name)
+}
+
+fn by_name<S: Serializer>(all: &[Estimate], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(all.iter().map(|estimate| (estimate.name, estimate.value)))
+}

@@ -1,5 +1,6 @@
 //! `xt28 gap`: where a machine's logs part from the simulator. One file a task, in `gap/`.
 
+mod diagnose;
 mod r#where;
 
 use clap::{Args, Subcommand};
@@ -15,12 +16,14 @@ pub(crate) struct Gap {
 
 #[derive(Subcommand)]
 enum Task {
+    Diagnose(diagnose::Diagnose),
     Where(r#where::Where),
 }
 
 impl Gap {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         match &self.task {
+            Task::Diagnose(task) => task.execute(),
             Task::Where(task) => task.execute(),
         }
     }

@@ -20,6 +20,7 @@ mod joints;
 mod knob;
 mod signals;
 mod stance;
+mod stands;
 mod travel;
 mod verdict;
 

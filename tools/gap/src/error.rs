@@ -110,6 +110,45 @@ pub enum GapError {
         /// Names of the channels.
         channels: String,
     },
+    /// The ground cannot be built.
+    #[error(transparent)]
+    Terrain(#[from] xt28_sim::TerrainError),
+    /// Two files hold one log.
+    #[error("{again}: the same log as {first}; give each log once, or it counts twice")]
+    SameLog {
+        /// The log given first.
+        first: String,
+        /// The log that is the same.
+        again: String,
+    },
+    /// No run goes by a name.
+    #[error("no run `{name}`; there are {known}: give a file name, a number or a scenario")]
+    NoSuchRun {
+        /// The name.
+        name: String,
+        /// The runs there are, each by all of its names.
+        known: String,
+    },
+    /// Several runs go by a name that should mean one.
+    #[error("`{name}` may mean {runs}; give the file name, and no two files of one name")]
+    AmbiguousRun {
+        /// The name.
+        name: String,
+        /// The runs it may mean.
+        runs: String,
+    },
+    /// A run is to be fitted on and held out.
+    #[error("{runs}: both to fit on and to hold out; name each run in one of --fit and --held")]
+    FittedAndHeld {
+        /// The runs.
+        runs: String,
+    },
+    /// No run is left to fit on.
+    #[error("no run is left to fit causes on ({why}); name at least one with --fit")]
+    NothingFitted {
+        /// Who chose so.
+        why: String,
+    },
 }
 
 impl GapError {

@@ -26,8 +26,10 @@ mod field_log;
 mod log_fault;
 mod mapping;
 mod overlay;
+pub mod page;
 mod replay;
 mod report;
+mod runs;
 mod series;
 mod toml_error;
 
@@ -43,5 +45,6 @@ pub use log_fault::{FaultKind, LogFault};
 pub use mapping::{Mapping, Source};
 pub use replay::Replay;
 pub use report::Report;
+pub use runs::{Choice, Known, KnownRun, RunSet, Use};
 pub use series::Series;
 pub use xt28_sim::Terrain;

@@ -1,0 +1,150 @@
+//! `xt28 gap diagnose`: what makes a machine part from its simulator, as far as its logs say.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use xt28_gap::diagnosis::{Diagnosis, Inquiry, Progress, Verdict as Answer};
+use xt28_gap::{Choice, Decoder, Known, Mapping, RunSet, Use, page};
+use xt28_machine::Machine;
+use xt28_sim::effects::Overlay;
+
+use crate::{Failure, Verdict};
+
+/// Say which unmodelled effect parts a machine from its simulator, with what probability
+///
+/// Prints where simulator and machine part, the causes with their probabilities and sizes, how far the
+/// gap shrinks on runs that were not fitted, and what to drive next. The answer may be "none" or
+/// "unknown". Exit status: 0 nothing beyond ordinary tolerances; 1 an effect, or something unknown;
+/// 2 it could not be done.
+///
+/// RUN is a file name, the number of a log in the order given, or a scenario of about.toml. Without
+/// --fit and --held, about.toml says what is fitted on; without it, the last third is held out.
+#[derive(Args)]
+pub(crate) struct Diagnose {
+    /// candump logs of one machine, plain or gzipped
+    #[arg(required = true)]
+    logs: Vec<PathBuf>,
+    /// DBC that the logs were sent with
+    #[arg(long, value_name = "FILE")]
+    dbc: PathBuf,
+    /// Which signal of that DBC is which channel (TOML), where names differ from ours
+    #[arg(long, value_name = "FILE")]
+    mapping: Option<PathBuf>,
+    /// Machine file (TOML); the built-in machine when left out
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// Effects that one knows the machine to have (TOML; see `xt28 effects`)
+    #[arg(long, value_name = "FILE")]
+    effects: Option<PathBuf>,
+    /// Terrain file (TOML) of all runs, instead of what about.toml says
+    #[arg(long, value_name = "FILE")]
+    terrain: Option<PathBuf>,
+    /// What is known of the logs (TOML); about.toml beside the first log, if there
+    #[arg(long, value_name = "FILE")]
+    about: Option<PathBuf>,
+    /// Runs to fit causes on
+    #[arg(long, value_name = "RUN", value_delimiter = ',')]
+    fit: Vec<String>,
+    /// Runs to hold out, to judge causes on
+    #[arg(long, value_name = "RUN", value_delimiter = ',')]
+    held: Vec<String>,
+    /// Take a log that ends in the middle of a line as ending before it
+    #[arg(long)]
+    accept_cut: bool,
+    /// Do not say how far the gap shrinks, which is the longest part of the work
+    #[arg(long)]
+    no_how_far: bool,
+    /// Write the answer as JSON into this file
+    #[arg(long, value_name = "OUT")]
+    json: Option<PathBuf>,
+    /// Write the causes found into this file (TOML), for `--effects` of other commands
+    #[arg(long, value_name = "OUT")]
+    overlay: Option<PathBuf>,
+}
+
+impl Diagnose {
+    pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let start = Instant::now();
+        let bar = progress_bar();
+        bar.set_message("reading logs");
+        let (inquiry, notes) = self.inquiry()?;
+        let show = |progress: Progress| {
+            bar.set_message(progress.stage);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 1000
+            bar.set_position((progress.done.clamp(0.0, 1.0) * 1e3) as u64);
+        };
+        let mut diagnosis = inquiry.diagnose(&show);
+        bar.finish_and_clear();
+        diagnosis.notes.splice(0..0, notes);
+        diagnosis.seconds = start.elapsed().as_secs_f64();
+        self.write(&diagnosis)?;
+        print!("{}", page::text(&diagnosis));
+        Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    /// The question, and what was taken for granted in asking it.
+    fn inquiry(&self) -> Result<(Inquiry, Vec<String>), Failure> {
+        let mapping =
+            self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
+        let decoder = Decoder::load(&self.dbc, &mapping)?;
+        let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
+        let believed =
+            self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
+        let beside = self.logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
+        let about = self.about.clone().or_else(|| beside.exists().then_some(beside));
+        let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
+        let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
+        let choice = set.choose(&self.fit, &self.held)?;
+        let mut notes = vec![split(&set, &choice)];
+        notes.extend(set.notes());
+        let mut inquiry = Inquiry::new(machine, set.into_field_runs(&choice)?);
+        inquiry.believed = believed.effects();
+        inquiry.how_far = !self.no_how_far;
+        Ok((inquiry, notes))
+    }
+
+    fn write(&self, diagnosis: &Diagnosis) -> Result<(), Failure> {
+        let json = self.json.as_ref().map(|path| -> Result<_, Failure> {
+            Ok((path, format!("{}\n", serde_json::to_string_pretty(diagnosis)?)))
+        });
+        let overlay = self.overlay.as_ref().map(|path| {
+            let head = page::headline(diagnosis).replace('\n', " ");
+            Ok((path, format!("# {head}\n\n{}", diagnosis.overlay().to_toml())))
+        });
+        for file in [json, overlay].into_iter().flatten() {
+            let (path, text) = file?;
+            std::fs::write(path, text).map_err(|error| {
+                let path = path.display();
+                format!("{path}: cannot write: {error}; give a folder that exists and has room")
+            })?;
+            eprintln!("wrote {}", path.display());
+        }
+        Ok(())
+    }
+}
+
+/// Which runs were fitted on, and who chose so.
+fn split(set: &RunSet, choice: &Choice) -> String {
+    let of = |wanted: Use| {
+        let runs = set.runs().iter().zip(&choice.uses).filter(|(_, used)| **used == wanted);
+        let files: Vec<&str> = runs.map(|(run, _)| run.file.as_str()).collect();
+        if files.is_empty() { "none".to_owned() } else { files.join(", ") }
+    };
+    let left = if choice.uses.contains(&Use::Left) {
+        format!("; left out: {}", of(Use::Left))
+    } else {
+        String::new()
+    };
+    format!("Fitted on {}; held out: {}{left} ({}).", of(Use::Fit), of(Use::Held), choice.why)
+}
+
+/// A bar over the whole diagnosis; indicatif draws it on a terminal only.
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("[{bar:40}] {percent:>3} %  {elapsed}  {msg}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}

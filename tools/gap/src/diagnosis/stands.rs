@@ -1,0 +1,92 @@
+//! The causes that a diagnosis stands by, and the overlay that puts them into the simulator.
+
+use xt28_sim::effects::{Entry, Overlay};
+
+use super::verdict::{Cause, Diagnosis, Verdict};
+
+/// A cause at or below this probability is only listed.
+const STANDS_ABOVE: f64 = 0.5;
+
+impl Diagnosis {
+    /// The causes that it stands by, the likeliest first: none unless the verdict is an effect.
+    pub fn stood_by(&self) -> impl Iterator<Item = &Cause> {
+        let stands = move |cause: &&Cause| {
+            self.verdict == Verdict::Effect && cause.probability > STANDS_ABOVE
+        };
+        self.causes.iter().filter(stands)
+    }
+
+    /// Those causes at their best values, for the simulator to load.
+    #[must_use]
+    pub fn overlay(&self) -> Overlay {
+        let entry = |cause: &Cause| Entry {
+            effect: cause.effect,
+            scope: cause.scope,
+            severity: 1.0,
+            values: cause
+                .parameters
+                .iter()
+                .filter_map(|estimate| {
+                    let parameter = cause.effect.parameter(estimate.name)?;
+                    let [low, high] = parameter.range;
+                    Some((parameter, estimate.value[0].clamp(low, high)))
+                })
+                .collect(),
+        };
+        Overlay { entries: self.stood_by().map(entry).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::verdict::Estimate;
+    use super::*;
+
+    fn cause(effect: &str, probability: f64, value: [f64; 3]) -> Cause {
+        let effect = xt28_sim::effects::find(effect).unwrap();
+        Cause {
+            effect,
+            scope: "all".parse().unwrap(),
+            probability,
+            parameters: vec![Estimate { name: effect.parameters[0].name, value }],
+            class: vec![effect.name],
+            begins: None,
+            shrink: None,
+        }
+    }
+
+    fn diagnosis(verdict: Verdict) -> Diagnosis {
+        Diagnosis {
+            verdict,
+            places: Vec::new(),
+            causes: vec![
+                cause("arm-delay", 0.9, [0.2, 0.19, 0.21]),
+                cause("steer-delay", 0.8, [1e9, 0.0, 2e9]),
+                cause("valve-lag", 0.4, [0.1, 0.0, 0.2]),
+            ],
+            probability_none: 0.0,
+            probability_unknown: 0.0,
+            together: None,
+            next: None,
+            not_testable: Vec::new(),
+            notes: Vec::new(),
+            seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn an_overlay_has_the_causes_stood_by_and_reads_back() {
+        let overlay = diagnosis(Verdict::Effect).overlay();
+        let again = Overlay::parse(&overlay.to_toml(), Path::new("o.toml")).unwrap();
+        assert_eq!(again, overlay);
+        let names: Vec<&str> = overlay.entries.iter().map(|entry| entry.effect.name).collect();
+        assert_eq!(names, ["arm-delay", "steer-delay"]);
+    }
+
+    #[test]
+    fn unknown_puts_nothing_into_the_simulator() {
+        assert!(diagnosis(Verdict::Unknown).overlay().entries.is_empty());
+    }
+}

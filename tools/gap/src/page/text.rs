@@ -1,0 +1,115 @@
+//! The verdict in words, for a terminal.
+
+use core::fmt::Write as _;
+
+use super::words::{estimate, headline, percent, short, shrink};
+use crate::diagnosis::{Cause, Diagnosis};
+
+/// Causes below this probability are left out, but for the first few.
+const LISTED_ABOVE: f64 = 0.01;
+/// Causes that are listed in any case.
+const LISTED_ANYWAY: usize = 3;
+/// Blocks and regimes listed.
+const PLACES: usize = 8;
+
+/// Verdict, place, causes, shrink, next test and reservations, a paragraph each.
+#[must_use]
+pub fn text(diagnosis: &Diagnosis) -> String {
+    let mut out = headline(diagnosis) + "\n";
+    for cause in diagnosis.stood_by() {
+        let _ = writeln!(out, "  {}: {}", cause.effect.name, cause.effect.meaning);
+    }
+    places(&mut out, diagnosis);
+    causes(&mut out, diagnosis);
+    if let Some(together) = &diagnosis.together {
+        let _ = writeln!(out, "\nhow far the gap shrinks on runs that were not fitted");
+        let _ =
+            writeln!(out, "  with {}: {}", together.effects.join(" + "), shrink(&together.shrink));
+        let _ =
+            writeln!(out, "  with a free model without physics: {}", shrink(&together.black_box));
+        let _ = writeln!(out, "  held out: {}", together.held_out_runs.join(", "));
+    }
+    if let Some(next) = &diagnosis.next {
+        let _ = writeln!(
+            out,
+            "\nwhat to drive next\n  {}: tells {} apart, {:.1} nats expected",
+            next.manoeuvre,
+            next.separates.join(", "),
+            next.nats
+        );
+    }
+    if !diagnosis.not_testable.is_empty() {
+        let _ = writeln!(out, "\nnot testable with these logs");
+        for one in &diagnosis.not_testable {
+            let _ =
+                writeln!(out, "  {:<22} {}; drive {}", one.effect.name, one.lacks, one.manoeuvre);
+        }
+    }
+    if !diagnosis.notes.is_empty() {
+        let _ = writeln!(out, "\nnotes");
+        for note in &diagnosis.notes {
+            let _ = writeln!(out, "  {note}");
+        }
+    }
+    let _ = writeln!(out, "\n{:.1} s", diagnosis.seconds);
+    out
+}
+
+fn places(out: &mut String, diagnosis: &Diagnosis) {
+    if diagnosis.places.is_empty() {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "\n{:<10} {:<7} {:<26} {:>14} {:>7}",
+        "where", "wheels", "signal", "gap over noise", "share"
+    );
+    for place in diagnosis.places.iter().take(PLACES) {
+        let _ = writeln!(
+            out,
+            "{:<10} {:<7} {:<26} {:>14} {:>7}",
+            place.block,
+            place.scope,
+            place.residual,
+            short(place.gap_over_noise),
+            percent(place.share)
+        );
+    }
+}
+
+fn causes(out: &mut String, diagnosis: &Diagnosis) {
+    let _ = writeln!(out, "\n{:>11}  cause", "probability");
+    let listed =
+        |(i, cause): &(usize, &Cause)| *i < LISTED_ANYWAY || cause.probability > LISTED_ABOVE;
+    for (_, cause) in diagnosis.causes.iter().enumerate().filter(listed) {
+        let wheels = if cause.effect.has_scope() { cause.scope.to_string() } else { String::new() };
+        let parameters: Vec<String> = cause.parameters.iter().map(estimate).collect();
+        let _ = writeln!(
+            out,
+            "{:>11}  {:<22} {wheels:<6} {}",
+            percent(cause.probability),
+            cause.effect.name,
+            parameters.join(", ")
+        );
+        if cause.class.len() > 1 {
+            let _ =
+                writeln!(out, "{:>11}  not to be told from {}", "", cause.class[1..].join(", "));
+        }
+        if let Some(begins) = &cause.begins {
+            let _ = writeln!(out, "{:>11}  begins {:.1} s into {}", "", begins.at_s, begins.run);
+        }
+        if let Some(by) = &cause.shrink {
+            let _ = writeln!(out, "{:>11}  shrinks the gap by {}", "", shrink(by));
+        }
+    }
+    let _ = writeln!(
+        out,
+        "{:>11}  nothing beyond ordinary tolerances",
+        percent(diagnosis.probability_none)
+    );
+    let _ = writeln!(
+        out,
+        "{:>11}  something that is not in the catalogue",
+        percent(diagnosis.probability_unknown)
+    );
+}

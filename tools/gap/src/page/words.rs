@@ -1,0 +1,122 @@
+//! Phrases that every form of a verdict shares.
+
+use xt28_machine::{Axle, Side};
+use xt28_sim::effects::Scope;
+
+use crate::diagnosis::{Cause, Diagnosis, Estimate, Shrink, Verdict};
+
+/// The verdict in one sentence.
+#[must_use]
+pub fn headline(diagnosis: &Diagnosis) -> String {
+    match diagnosis.verdict {
+        Verdict::Effect => {
+            let each: Vec<String> = diagnosis.stood_by().map(cause).collect();
+            format!("{}.", each.join(", and "))
+        }
+        Verdict::None => format!(
+            "Nothing beyond ordinary tolerances (probability {}).",
+            percent(diagnosis.probability_none)
+        ),
+        Verdict::Unknown => {
+            let place = diagnosis.places.first().map_or_else(String::new, |place| {
+                format!(", foremost in {} ({})", place.residual, on(place.scope))
+            });
+            format!(
+                "Something is the matter that no effect of the catalogue explains{place} (probability {}).",
+                percent(diagnosis.probability_unknown)
+            )
+        }
+    }
+}
+
+/// An effect with its wheels and probability.
+fn cause(cause: &Cause) -> String {
+    let whose =
+        if cause.effect.has_scope() { format!(" at {}", on(cause.scope)) } else { String::new() };
+    format!("{}{whose} (probability {})", cause.effect.name, percent(cause.probability))
+}
+
+/// The wheels of a scope, in words.
+pub(super) fn on(scope: Scope) -> String {
+    match scope {
+        Scope::All => "all wheels".to_owned(),
+        Scope::Axle(Axle::Front) => "the front axle".to_owned(),
+        Scope::Axle(Axle::Middle) => "the middle axle".to_owned(),
+        Scope::Axle(Axle::Rear) => "the rear axle".to_owned(),
+        Scope::Side(Side::Left) => "the left side".to_owned(),
+        Scope::Side(Side::Right) => "the right side".to_owned(),
+        Scope::Wheel(wheel) => format!("wheel {wheel}"),
+    }
+}
+
+/// A share of one in percent; never a certainty that a finite log cannot give.
+pub(super) fn percent(share: f64) -> String {
+    if share > 0.99 && share < 1.01 {
+        "above 99 %".to_owned()
+    } else if share > 0.0 && share < 0.01 {
+        "below 1 %".to_owned()
+    } else {
+        format!("{:.0} %", share * 100.0)
+    }
+}
+
+/// A share of a gap in percent; it may be negative.
+pub(super) fn shrinks(share: f64) -> String {
+    format!("{:.0} %", share * 100.0)
+}
+
+/// Three significant digits.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    // The decimal exponent of any f64 is within a few hundred of zero.
+    #[allow(clippy::cast_possible_truncation)]
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..=6).contains(&exponent) {
+        return format!("{value:.2e}");
+    }
+    let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+    format!("{value:.decimals$}")
+}
+
+/// A parameter with its 90 % interval.
+pub(super) fn estimate(one: &Estimate) -> String {
+    let [best, low, high] = one.value.map(short);
+    format!("{} = {best} ({low} to {high})", one.name)
+}
+
+/// A shrink over its three horizons.
+pub(super) fn shrink(shrink: &Shrink) -> String {
+    let one = |share: f64, [low, high]: [f64; 2]| {
+        format!("{} ({} to {})", shrinks(share), shrinks(low), shrinks(high))
+    };
+    format!(
+        "{} one step ahead, {} over 5 s, {} over whole runs",
+        one(shrink.one_step, shrink.interval[0]),
+        one(shrink.five_s, shrink.interval[1]),
+        one(shrink.run, shrink.interval[2])
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_three_digits() {
+        assert_eq!(short(0.21), "0.210");
+        assert_eq!(short(-12.345), "-12.3");
+        assert_eq!(short(41_234.0), "41234");
+        assert_eq!(short(1.2e-7), "1.20e-7");
+        assert_eq!(short(0.0), "0");
+    }
+
+    #[test]
+    fn no_probability_is_said_to_be_one() {
+        assert_eq!(percent(1.0), "above 99 %");
+        assert_eq!(percent(0.93), "93 %");
+        assert_eq!(percent(1e-6), "below 1 %");
+        assert_eq!(percent(0.0), "0 %");
+    }
+}

@@ -1,0 +1,135 @@
+//! The logs of one machine that belong together: each read once, with the ground it was driven on.
+
+mod choice;
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use xt28_sim::Terrain;
+
+use crate::diagnosis::FieldRun;
+use crate::{About, Decoder, FieldLog, GapError};
+
+pub use choice::{Choice, Use};
+
+/// Logs of one machine, in the order given, no two the same.
+#[derive(Clone, Debug)]
+pub struct RunSet {
+    runs: Vec<KnownRun>,
+    notes: Vec<String>,
+}
+
+/// One log with what is known of it.
+#[derive(Clone, Debug)]
+pub struct KnownRun {
+    /// File name, without its folder.
+    pub file: String,
+    /// What was driven, where `about.toml` says.
+    pub scenario: Option<String>,
+    /// Whether `about.toml` advises to fit on it; `None` without one.
+    pub advised: Option<bool>,
+    /// The ground it was driven on, as far as one knows.
+    pub terrain: Terrain,
+    /// The log.
+    pub log: FieldLog,
+}
+
+/// What is said of the ground, beside the logs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known<'a> {
+    /// What is known of the logs: the file that speaks of each.
+    pub about: Option<&'a Path>,
+    /// The ground of every run, instead of what `about` says.
+    pub terrain: Option<&'a Path>,
+}
+
+impl RunSet {
+    /// Reads the logs at `paths`. With `accept_cut`, a log that ends in the middle of a line is taken
+    /// as ending before it.
+    ///
+    /// # Errors
+    /// [`GapError`], also [`GapError::SameLog`] where two files hold one log.
+    pub fn load(
+        paths: &[PathBuf],
+        decoder: &Decoder,
+        known: Known<'_>,
+        accept_cut: bool,
+    ) -> Result<Self, GapError> {
+        let about = known.about.map(About::load).transpose()?;
+        let one_ground = known.terrain.map(Terrain::load).transpose()?;
+        let read = |path: &PathBuf| {
+            let told = match (&about, known.about) {
+                (Some(about), Some(file)) => Some(about.run_of(path).ok_or_else(|| {
+                    let log = file_name(path);
+                    GapError::NoRun { path: file.to_owned(), log }
+                })?),
+                _ => None,
+            };
+            let ground = match (&one_ground, told) {
+                (Some(ground), _) => ground.clone(),
+                (None, Some(_)) => About::terrain_of(known.about.unwrap_or(path), path)?,
+                (None, None) => Terrain::Flat,
+            };
+            Ok(KnownRun {
+                file: file_name(path),
+                scenario: told.and_then(|run| run.scenario.clone()),
+                advised: told.map(|run| run.fit),
+                terrain: ground,
+                log: FieldLog::load(path, decoder, accept_cut)?,
+            })
+        };
+        let runs: Vec<KnownRun> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
+        let mut notes = Vec::new();
+        if one_ground.is_none() && about.is_none() {
+            notes.push(
+                "No word on the ground: every run is taken as driven on level ground.".to_owned(),
+            );
+        }
+        Self::new(runs, notes)
+    }
+
+    /// The set of `runs`, with what there is to say of them.
+    ///
+    /// # Errors
+    /// [`GapError::SameLog`] where two hold one log.
+    pub fn new(runs: Vec<KnownRun>, notes: Vec<String>) -> Result<Self, GapError> {
+        for (i, run) in runs.iter().enumerate() {
+            if let Some(before) = runs[..i].iter().find(|before| same(&before.log, &run.log)) {
+                let (first, again) = (before.log.name().to_owned(), run.log.name().to_owned());
+                return Err(GapError::SameLog { first, again });
+            }
+        }
+        Ok(Self { runs, notes })
+    }
+
+    /// The runs, in the order given.
+    #[must_use]
+    pub fn runs(&self) -> &[KnownRun] {
+        &self.runs
+    }
+
+    /// What was taken for granted, and every fault of every log; whole sentences.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let faults = self.runs.iter().flat_map(|run| run.log.faults());
+        self.notes.iter().cloned().chain(faults.map(ToString::to_string)).collect()
+    }
+
+    /// The runs for an inquiry, without those that `choice` leaves out.
+    ///
+    /// # Errors
+    /// [`GapError::Unmeasured`] names what a log has not.
+    pub fn into_field_runs(self, choice: &Choice) -> Result<Vec<FieldRun>, GapError> {
+        let used = self.runs.into_iter().zip(&choice.uses).filter(|(_, used)| **used != Use::Left);
+        used.map(|(run, used)| FieldRun::new(run.log, run.terrain, *used == Use::Fit)).collect()
+    }
+}
+
+/// One log under two names: the same samples at the same instants.
+fn same(a: &FieldLog, b: &FieldLog) -> bool {
+    a.frames() == b.frames() && a.duration_s() == b.duration_s() && a.all_series() == b.all_series()
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,5 +1,6 @@
 //! `xt28 gap`: where a machine's logs part from the simulator. One file a task, in `gap/`.
 
+mod check;
 mod diagnose;
 mod r#where;
 
@@ -18,6 +19,7 @@ pub(crate) struct Gap {
 enum Task {
     Diagnose(diagnose::Diagnose),
     Where(r#where::Where),
+    Check(check::Check),
 }
 
 impl Gap {
@@ -25,6 +27,7 @@ impl Gap {
         match &self.task {
             Task::Diagnose(task) => task.execute(),
             Task::Where(task) => task.execute(),
+            Task::Check(task) => task.execute(),
         }
     }
 }

@@ -122,6 +122,13 @@ impl<'a> Evidence<'a> {
         self.generators.iter().zip(stacks).map(left).collect()
     }
 
+    /// Where all knobs at once come to lie, each by how many of its tolerances from the base.
+    #[must_use]
+    pub fn shifts(&self) -> Vec<(Knob, f64)> {
+        let shifts = self.factor.solve(&self.gradient);
+        self.knobs.iter().copied().zip(shifts.iter().map(|shift| -shift)).collect()
+    }
+
     /// Cost of the base.
     #[must_use]
     pub fn base_cost(&self) -> f64 {

@@ -40,6 +40,11 @@ pub(crate) const RULES: &[Rule] = &[
         never: &["rapier3d", "xt28-sim"],
         because: "the ground needs no engine: who drives may read it too",
     },
+    Rule::Unreachable {
+        from: "xt28-gap",
+        never: &["xt28-gap-plants", "xt28-gap-check"],
+        because: "a diagnosis never knows the machines that it is examined on",
+    },
     Rule::UsesOnly {
         package: "xt28-safety",
         allowed: &["libm"],
@@ -118,6 +123,13 @@ mod tests {
             ("xt28-ecus", true, &[("xt28-dbc", Kind::Normal)]),
             ("ecu-emu", true, &[("xt28-ecus", Kind::Normal), ("xt28-sim", Kind::Normal)]),
             ("xt28-safety", true, &[("libm", Kind::Normal), ("proptest", Kind::Dev)]),
+            ("xt28-gap", true, &[("xt28-sim", Kind::Normal)]),
+            ("xt28-gap-plants", true, &[("xt28-sim", Kind::Normal)]),
+            (
+                "xt28-gap-check",
+                true,
+                &[("xt28-gap", Kind::Normal), ("xt28-gap-plants", Kind::Normal)],
+            ),
             ("gateway", true, &[("xt28-bus", Kind::Normal), ("xt28-safety", Kind::Normal)]),
             ("socketcan", false, &[]),
             ("rapier3d", false, &[]),
@@ -144,6 +156,7 @@ mod tests {
             ("xt28-sim", "xt28-bus", "xt28-sim -> xt28-bus -> socketcan breaks never 2"),
             ("xt28-bus", "xt28-sim", "gateway -> xt28-bus -> xt28-sim -> rapier3d breaks never 3"),
             ("xt28-terrain", "rapier3d", "xt28-terrain -> rapier3d breaks the ground"),
+            ("xt28-gap", "xt28-gap-plants", "xt28-gap -> xt28-gap-plants breaks a diagnosis"),
             ("gateway", "socketcan", "uses socketcan: never 4"),
             ("xt28-safety", "socketcan", "uses socketcan: the safety kernel"),
         ];

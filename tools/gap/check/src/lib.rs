@@ -1,0 +1,35 @@
+//! The diagnosis examined on machines whose faults are known and withheld.
+//!
+//! | Step | Where |
+//! |---|---|
+//! | cases, drawn or in a folder | [`Source`] |
+//! | answers sealed, every case diagnosed, the seal opened | [`Examination`] |
+//! | what is so, and what was said | [`Truth`], [`Reply`] |
+//! | plain rules on the same logs | [`BASELINES`] |
+//! | scores with their intervals, the reliability curve | [`scores`], [`Report`] |
+#![forbid(unsafe_code)]
+
+mod baselines;
+mod coverage;
+mod crew;
+mod error;
+mod examination;
+mod reply;
+mod report;
+mod score;
+mod source;
+mod truth;
+mod wilson;
+
+pub use baselines::{BASELINES, Baseline};
+pub use error::CheckError;
+pub use examination::{Clock, Examination, Examined, Judged, Options};
+pub use reply::{Named, Reply};
+pub use report::Report;
+pub use score::{
+    Bin, Score, Scores, Statement, calibration_error, error_by_chance, reliability, scores,
+    statements,
+};
+pub use source::{MIX, Source};
+pub use truth::{Fact, Kind, Truth};
+pub use wilson::wilson;

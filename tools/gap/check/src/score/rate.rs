@@ -1,0 +1,92 @@
+//! A score with its interval and the number of cases behind it.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::wilson;
+
+/// Resamples of a bootstrap interval, and the seed of its draws.
+const RESAMPLES: usize = 2000;
+const BOOTSTRAP_SEED: u64 = 28;
+
+/// One score.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Score {
+    /// Its value; `NaN` (null in JSON) where no case says anything.
+    pub value: f64,
+    /// 95 % interval: Wilson's of a share, a bootstrap over cases of anything else.
+    pub interval: [f64; 2],
+    /// Cases behind it.
+    pub count: usize,
+}
+
+impl Score {
+    /// A share: how many of all.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)]
+    pub fn share(outcomes: impl IntoIterator<Item = bool>) -> Self {
+        let outcomes: Vec<bool> = outcomes.into_iter().collect();
+        let (hits, of) = (outcomes.iter().filter(|hit| **hit).count(), outcomes.len());
+        let value = if of == 0 { f64::NAN } else { hits as f64 / of as f64 };
+        Self { value, interval: wilson(hits, of), count: of }
+    }
+
+    /// A mean over cases.
+    #[must_use]
+    pub fn mean(values: impl IntoIterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.into_iter().collect();
+        Self::of(&values, average)
+    }
+
+    /// Anything that is a function of the cases.
+    #[must_use]
+    pub fn of<T: Copy>(cases: &[T], statistic: impl Fn(&[T]) -> f64) -> Self {
+        if cases.is_empty() {
+            return Self { value: f64::NAN, interval: [f64::NAN; 2], count: 0 };
+        }
+        let mut random = ChaCha8Rng::seed_from_u64(BOOTSTRAP_SEED);
+        let mut drawn: Vec<f64> = (0..RESAMPLES)
+            .map(|_| {
+                let again = cases.iter().map(|_| cases[random.random_range(0..cases.len())]);
+                statistic(&again.collect::<Vec<T>>())
+            })
+            .collect();
+        drawn.sort_by(f64::total_cmp);
+        let interval = [drawn[RESAMPLES / 40], drawn[RESAMPLES - 1 - RESAMPLES / 40]];
+        Self { value: statistic(cases), interval, count: cases.len() }
+    }
+
+    /// What nobody has stated.
+    #[must_use]
+    pub const fn unsaid() -> Self {
+        Self { value: f64::NAN, interval: [f64::NAN; 2], count: 0 }
+    }
+}
+
+/// Mean; `NaN` of nothing.
+#[allow(clippy::cast_precision_loss)]
+pub(crate) fn average(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_and_a_mean_have_value_interval_and_count() {
+        let share = Score::share([true, true, false, true]);
+        assert!((share.value - 0.75).abs() < 1e-15 && share.count == 4);
+        assert_eq!(share.interval, wilson(3, 4));
+        assert!(Score::share([]).value.is_nan());
+        let values: Vec<f64> = (0..400).map(|i| f64::from(i % 2)).collect();
+        let mean = Score::mean(values.iter().copied());
+        // Standard error of 400 coins: 0.025.
+        assert!((mean.value - 0.5).abs() < 1e-15);
+        assert!(
+            (mean.interval[0] - 0.451).abs() < 0.008 && (mean.interval[1] - 0.549).abs() < 0.008
+        );
+        assert_eq!(mean, Score::mean(values));
+    }
+}

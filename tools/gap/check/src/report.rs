@@ -198,7 +198,8 @@ fn is_right(case: &Judged) -> bool {
 }
 
 fn cell(score: &Score) -> String {
-    let [low, high] = score.interval;
+    // Sums of rounding errors would print as -0.00.
+    let [low, high] = score.interval.map(|end| if end.abs() < 5e-3 { 0.0 } else { end });
     if score.count == 0 {
         "-".to_owned()
     } else if score.value >= 10.0 {

@@ -7,12 +7,13 @@ use std::time::Duration;
 use xt28_dbc::{CanId, Frame};
 use xt28_dbc_model::{Database, Message, Signal, ValueError};
 
-use crate::{Channel, GapError, Mapping, Need};
+use crate::{Channel, GapError, Mapping, Need, Source};
 
 /// Reads channels from frames. Knows no identifier and no layout of its own.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     messages: BTreeMap<u32, Tap>,
+    names: BTreeMap<Channel, String>,
     missing: Vec<Channel>,
 }
 
@@ -47,7 +48,11 @@ impl Decoder {
     pub fn parse(text: &str, path: &Path, mapping: &Mapping) -> Result<Self, GapError> {
         let database = Database::parse(text, &path.display().to_string())
             .map_err(|error| GapError::Dbc { problem: error.to_string() })?;
-        let mut decoder = Self { messages: BTreeMap::new(), missing: Vec::new() };
+        let name = |(channel, source): (Channel, &Source)| {
+            (channel, format!("{}.{}", source.message, source.signal))
+        };
+        let names = mapping.iter().map(name).collect();
+        let mut decoder = Self { messages: BTreeMap::new(), names, missing: Vec::new() };
         for (channel, source) in mapping.iter() {
             let Some(message) = database.message_named(&source.message) else {
                 decoder.miss(path, mapping, channel, None)?;
@@ -84,6 +89,12 @@ impl Decoder {
     pub fn message_of(&self, channel: Channel) -> Option<&str> {
         let tap = self.messages.values().find(|tap| tap.channels().any(|c| c == channel))?;
         Some(tap.name())
+    }
+
+    /// Message and signal that `channel` is read from, whether or not the DBC has them.
+    #[must_use]
+    pub fn name_of(&self, channel: Channel) -> String {
+        self.names.get(&channel).cloned().unwrap_or_default()
     }
 
     pub(crate) fn tap(&self, id: CanId) -> Option<&Tap> {

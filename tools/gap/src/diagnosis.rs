@@ -13,6 +13,7 @@ mod controllers;
 mod diagnose;
 mod driving;
 mod evidence;
+mod excitation;
 mod generator;
 mod hypothesis;
 mod inquiry;
@@ -23,14 +24,18 @@ mod stance;
 mod stands;
 mod travel;
 mod verdict;
+mod wheel_order;
 
 pub use diagnose::Progress;
 pub use evidence::Evidence;
+pub use excitation::not_testable;
 pub use generator::{Floor, Generator, Residual, Signal};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
 pub use knob::{Knob, TOLERANCES, Tolerance};
+pub(crate) use signals::needed;
 pub use signals::{DT_S, Samples, Signals};
 pub use verdict::{
     Beginning, Cause, Diagnosis, Estimate, Next, NotTestable, Place, Shrink, Together, Verdict,
 };
+pub use wheel_order::{Swap, swapped_wheels};

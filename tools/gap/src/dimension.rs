@@ -46,6 +46,20 @@ impl Dimension {
         })
     }
 
+    /// Its SI unit.
+    #[must_use]
+    pub const fn si(self) -> &'static str {
+        match self {
+            Self::Length => "m",
+            Self::Pressure => "Pa",
+            Self::Force => "N",
+            Self::Current => "A",
+            Self::Angle => "rad",
+            Self::AngularSpeed => "rad/s",
+            Self::Ratio | Self::Plain => "",
+        }
+    }
+
     /// The units [`Dimension::si_per`] knows, for an error message.
     #[must_use]
     pub const fn units(self) -> &'static str {

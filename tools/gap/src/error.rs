@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
+use crate::diagnosis::Swap;
+
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum GapError {
@@ -72,7 +74,7 @@ pub enum GapError {
     Log(#[from] ReadError),
     /// The log holds no sample of something that a replay needs.
     #[error(
-        "{log}: no frame `{message}` in the log, which {channel} comes from; check that log and DBC belong together"
+        "{log}: no frame `{message}` in the log, which {channel} comes from, though {known} of its {frames} frames are known; check that log and DBC belong together"
     )]
     Silent {
         /// The log.
@@ -81,6 +83,22 @@ pub enum GapError {
         message: String,
         /// The channel.
         channel: String,
+        /// Frames of the log that the DBC and the mapping know.
+        known: u64,
+        /// Frames of the log.
+        frames: u64,
+    },
+    /// No frame of the log is of a message that the DBC and the mapping know.
+    #[error(
+        "{log}: none of its {frames} frames ({ids} and the like) is of a message that DBC and mapping know; give the DBC that the log was sent with"
+    )]
+    Stranger {
+        /// The log.
+        log: String,
+        /// Its frames.
+        frames: u64,
+        /// Some of their identifiers.
+        ids: String,
     },
     /// `about.toml` does not speak of this log.
     #[error("{path}: no [[run]] with file = \"{log}\"; add it, or give the terrain with --terrain")]
@@ -102,13 +120,64 @@ pub enum GapError {
     },
     /// The log lacks what diagnosis drives the blocks with.
     #[error(
-        "{log}: diagnosis needs {channels}, and the log has none; say with --mapping what they are called"
+        "{log}: diagnosis needs {channels}, and the log has none; record them too, or say with --mapping what they are called"
     )]
     Unmeasured {
         /// Name of the log.
         log: String,
         /// Names of the channels.
         channels: String,
+    },
+    /// There is too little of a log.
+    #[error(
+        "{log}: {duration_s:.1} s long, and a diagnosis needs {least_s:.0} s of one run; leave it out or record longer"
+    )]
+    TooShort {
+        /// The log.
+        log: String,
+        /// Its length, s.
+        duration_s: f64,
+        /// The least, s.
+        least_s: f64,
+    },
+    /// A log is two, one after the other.
+    #[error(
+        "{log}:{line}: clock steps by {by_s:+.3} s; cut the log before this line and give both parts, or one"
+    )]
+    ClockSteps {
+        /// The log.
+        log: String,
+        /// Line after the step, from 1.
+        line: u64,
+        /// Its size, s; ahead > 0.
+        by_s: f64,
+    },
+    /// A channel reads what no such machine can have.
+    #[error(
+        "{log}: {channel} ({signal}) reads {:.3} to {:.3} {unit}, and such a machine has {} to {} {unit} at the most; check DBC and mapping (signal, unit, scale)",
+        found[0], found[1], possible[0], possible[1]
+    )]
+    Impossible {
+        /// The log.
+        log: String,
+        /// The channel.
+        channel: String,
+        /// Message and signal.
+        signal: String,
+        /// Least and greatest value, SI.
+        found: [f64; 2],
+        /// Least and greatest that can be, SI.
+        possible: [f64; 2],
+        /// SI unit.
+        unit: &'static str,
+    },
+    /// Commands and readings are not of the same wheels.
+    #[error(
+        "wheels look swapped: {swap}; nothing is put in order by itself: mend the mapping, or say --accept-wheel-order if the machine itself is wired so"
+    )]
+    WheelOrder {
+        /// Which.
+        swap: Swap,
     },
     /// The ground cannot be built.
     #[error(transparent)]

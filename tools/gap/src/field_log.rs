@@ -1,6 +1,6 @@
 //! A field log as time series: candump, plain or gzipped, read through the log's own DBC.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -20,6 +20,9 @@ const GZIP_MAGIC: [u8; 2] = [0x1F, 0x8B];
 /// A frame this many periods after the last of its kind came after a gap. Below two, so that one lost
 /// frame is seen; above one, so that jitter is not.
 const GAP_PERIODS: f64 = 1.5;
+
+/// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
+const PAUSE_S: f64 = 0.2;
 
 /// What a log measured and what it commanded, against seconds from its first frame.
 #[derive(Clone, Debug)]
@@ -107,6 +110,9 @@ impl FieldLog {
     }
 }
 
+/// Identifiers that an error names, of those that a DBC has not.
+const STRANGE_SHOWN: usize = 5;
+
 /// A log while it is read.
 #[derive(Default)]
 struct Intake {
@@ -114,7 +120,10 @@ struct Intake {
     first: Option<SimTime>,
     latest: SimTime,
     frames: u64,
+    known_frames: u64,
+    strange: BTreeSet<CanId>,
     back: Option<(u64, f64, u64)>,
+    ahead: Option<(u64, f64, u64)>,
     messages: BTreeMap<CanId, Attendance>,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
 }
@@ -141,8 +150,15 @@ impl Intake {
             *frames += 1;
             return;
         }
+        self.note_pause(record.at, line);
         self.latest = record.at;
-        let Some(tap) = decoder.tap(record.frame.id()) else { return };
+        let Some(tap) = decoder.tap(record.frame.id()) else {
+            if self.strange.len() < STRANGE_SHOWN {
+                self.strange.insert(record.frame.id());
+            }
+            return;
+        };
+        self.known_frames += 1;
         let attendance = self.messages.entry(record.frame.id()).or_default();
         attendance.note(tap, record, line);
         let at_s = (record.at - first).as_secs_f64();
@@ -156,24 +172,53 @@ impl Intake {
         }
     }
 
+    /// Sees whether the bus was silent before a frame.
+    fn note_pause(&mut self, at: SimTime, line: u64) {
+        if self.frames < 2 {
+            return;
+        }
+        let by_s = (at - self.latest).as_secs_f64();
+        if by_s > PAUSE_S {
+            let (longest_line, longest_s, times) = self.ahead.get_or_insert((line, 0.0, 0));
+            if by_s > *longest_s {
+                (*longest_line, *longest_s) = (line, by_s);
+            }
+            *times += 1;
+        }
+    }
+
+    /// What says that this is another bus's log: none of its frames is known.
+    fn stranger(&self, log: &str) -> GapError {
+        let ids: Vec<String> = self.strange.iter().map(ToString::to_string).collect();
+        GapError::Stranger { log: log.to_owned(), frames: self.frames, ids: ids.join(", ") }
+    }
+
     fn finish(
         self,
         name: Arc<str>,
         decoder: &Decoder,
         cut: Option<(u64, FaultKind)>,
     ) -> Result<FieldLog, GapError> {
+        if self.known_frames == 0 && self.frames > 0 {
+            return Err(self.stranger(&name));
+        }
         for channel in Channel::all() {
             if channel.need() == Need::Required && !self.series.contains_key(&channel) {
                 return Err(GapError::Silent {
                     log: name.to_string(),
                     message: decoder.message_of(channel).unwrap_or_default().to_owned(),
                     channel: channel.to_string(),
+                    known: self.known_frames,
+                    frames: self.frames,
                 });
             }
         }
         let mut kinds: Vec<(u64, FaultKind)> = cut.into_iter().collect();
         if let Some((line, by_s, frames)) = self.back {
             kinds.push((line, FaultKind::ClockBack { by_s, frames }));
+        }
+        if let Some((line, by_s, times)) = self.ahead {
+            kinds.push((line, FaultKind::ClockAhead { by_s, times }));
         }
         for (id, attendance) in &self.messages {
             if let Some(tap) = decoder.tap(*id) {

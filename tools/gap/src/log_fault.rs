@@ -26,6 +26,13 @@ pub enum FaultKind {
         /// Frames left out.
         frames: u64,
     },
+    /// Times go ahead by more than any message is ever away: the logger paused, or its clock jumped.
+    ClockAhead {
+        /// The longest time without any frame, s.
+        by_s: f64,
+        /// How often.
+        times: u64,
+    },
     /// Frames of a cyclic message are not there.
     Dropped {
         /// Message.
@@ -67,6 +74,10 @@ impl fmt::Display for LogFault {
             FaultKind::ClockBack { by_s, frames } => write!(
                 f,
                 "clock jumps back by {by_s:.6} s; {frames} frames are left out until it has caught up, so cut the log there if they matter"
+            ),
+            FaultKind::ClockAhead { by_s, times } => write!(
+                f,
+                "no frame of any kind for {by_s:.3} s before this line, {times} times so in this log; the values before are held, so cut the log there if the clock jumped"
             ),
             FaultKind::Dropped { message, gaps, frames, longest_s } => write!(
                 f,

@@ -1,13 +1,14 @@
 //! The logs of one machine that belong together: each read once, with the ground it was driven on.
 
 mod choice;
+mod soundness;
 
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::FieldRun;
+use crate::diagnosis::{FieldRun, Signals, swapped_wheels};
 use crate::{About, Decoder, FieldLog, GapError};
 
 pub use choice::{Choice, Use};
@@ -48,7 +49,8 @@ impl RunSet {
     /// as ending before it.
     ///
     /// # Errors
-    /// [`GapError`], also [`GapError::SameLog`] where two files hold one log.
+    /// [`GapError`]: what cannot be read, what cannot be diagnosed (too short, without a signal, on a
+    /// clock that steps, with values that cannot be), and two files that hold one log.
     pub fn load(
         paths: &[PathBuf],
         decoder: &Decoder,
@@ -70,12 +72,14 @@ impl RunSet {
                 (None, Some(_)) => About::terrain_of(known.about.unwrap_or(path), path)?,
                 (None, None) => Terrain::Flat,
             };
+            let log = FieldLog::load(path, decoder, accept_cut)?;
+            soundness::check(&log, decoder)?;
             Ok(KnownRun {
                 file: file_name(path),
                 scenario: told.and_then(|run| run.scenario.clone()),
                 advised: told.map(|run| run.fit),
                 terrain: ground,
-                log: FieldLog::load(path, decoder, accept_cut)?,
+                log,
             })
         };
         let runs: Vec<KnownRun> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
@@ -115,13 +119,26 @@ impl RunSet {
         self.notes.iter().cloned().chain(faults.map(ToString::to_string)).collect()
     }
 
-    /// The runs for an inquiry, without those that `choice` leaves out.
+    /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may
+    /// look swapped.
     ///
     /// # Errors
-    /// [`GapError::Unmeasured`] names what a log has not.
-    pub fn into_field_runs(self, choice: &Choice) -> Result<Vec<FieldRun>, GapError> {
+    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::WheelOrder`] the wheels that
+    /// look swapped.
+    pub fn into_field_runs(
+        self,
+        choice: &Choice,
+        any_order: bool,
+    ) -> Result<Vec<FieldRun>, GapError> {
         let used = self.runs.into_iter().zip(&choice.uses).filter(|(_, used)| **used != Use::Left);
-        used.map(|(run, used)| FieldRun::new(run.log, run.terrain, *used == Use::Fit)).collect()
+        let runs: Vec<FieldRun> = used
+            .map(|(run, used)| FieldRun::new(run.log, run.terrain, *used == Use::Fit))
+            .collect::<Result<_, _>>()?;
+        let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
+        match swapped_wheels(&signals) {
+            Some(swap) if !any_order => Err(GapError::WheelOrder { swap }),
+            _ => Ok(runs),
+        }
     }
 }
 

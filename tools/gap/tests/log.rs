@@ -220,3 +220,23 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_bus_that_falls_silent_is_a_fault_with_its_line() {
+    let late = |tick: u32| if tick < 50 { tick * 10 } else { tick * 10 + 400 };
+    let text: String = (0..60).map(late).map(period).collect();
+    let log = read(&text).unwrap();
+    let pause = log.faults().iter().find(|f| matches!(f.kind, FaultKind::ClockAhead { .. }));
+    let pause = pause.expect("a pause is seen");
+    assert_eq!(pause.line, 50 * 9 + 1);
+    let FaultKind::ClockAhead { by_s, times } = pause.kind else { unreachable!() };
+    assert!((by_s - 0.41).abs() < 1e-9 && times == 1, "{by_s} {times}");
+    let words = pause.to_string();
+    assert!(words.contains("cut the log there if the clock jumped"), "{words}");
+}
+
+#[test]
+fn a_log_of_another_bus_says_which_identifiers_it_has() {
+    let error = read("(1.0) can0 123#55\n(1.1) can0 18FF0001#55\n").unwrap_err().to_string();
+    assert!(error.contains("none of its 2 frames (123, 18FF0001 and the like)"), "{error}");
+}

@@ -53,6 +53,9 @@ pub(crate) struct Diagnose {
     /// Take a log that ends in the middle of a line as ending before it
     #[arg(long)]
     accept_cut: bool,
+    /// Go on where commands and readings of the arms look like those of different wheels
+    #[arg(long)]
+    accept_wheel_order: bool,
     /// Do not say how far the gap shrinks, which is the longest part of the work
     #[arg(long)]
     no_how_far: bool,
@@ -99,7 +102,8 @@ impl Diagnose {
         let choice = set.choose(&self.fit, &self.held)?;
         let mut notes = vec![split(&set, &choice)];
         notes.extend(set.notes());
-        let mut inquiry = Inquiry::new(machine, set.into_field_runs(&choice)?);
+        let mut inquiry =
+            Inquiry::new(machine, set.into_field_runs(&choice, self.accept_wheel_order)?);
         inquiry.believed = believed.effects();
         inquiry.how_far = !self.no_how_far;
         Ok((inquiry, notes))

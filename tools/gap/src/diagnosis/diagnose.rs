@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use xt28_sim::effects::Parameter;
 
 use super::evidence::Evidence;
+use super::excitation::not_testable;
 use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
 use super::knob::Knob;
@@ -55,7 +56,7 @@ impl Inquiry {
             probability_unknown: 0.0,
             together: None,
             next: None,
-            not_testable: Vec::new(),
+            not_testable: not_testable(&runs, &self.catalogue),
             notes: Vec::new(),
             seconds: 0.0,
         }

@@ -158,7 +158,7 @@ impl Signals {
 }
 
 /// The channels without which the blocks cannot be driven; a receiver may be missing.
-fn needed() -> impl Iterator<Item = Channel> {
+pub(crate) fn needed() -> impl Iterator<Item = Channel> {
     let receiver = [Channel::East, Channel::North, Channel::Heading];
     let unused = |channel: &Channel| {
         matches!(

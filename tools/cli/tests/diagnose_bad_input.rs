@@ -1,0 +1,125 @@
+//! What `xt28 gap diagnose` answers to logs, databases and mappings that do not fit: one line that says
+//! what, where and what to do, exit status 2, and nothing on stdout.
+
+mod short_drive;
+
+use std::fs;
+
+use short_drive::{DBC, log, path};
+use tempfile::TempDir;
+
+fn refusal(arguments: &[&str]) -> String {
+    short_drive::refusal(&[&["--dbc", DBC], arguments].concat())
+}
+
+/// The log with every line changed or left out.
+fn changed(change: impl Fn(f64, &str) -> Option<(f64, String)>) -> (TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(log()).unwrap();
+    let mut start_s = None;
+    let line = |line: &str| {
+        let (time, rest) = line[1..].split_once(')').unwrap();
+        let time_s: f64 = time.parse().unwrap();
+        let start_s = *start_s.get_or_insert(time_s);
+        let (at_s, rest) = change(time_s - start_s, rest)?;
+        Some(format!("({:.6}){rest}\n", start_s + at_s))
+    };
+    let text: String = text.lines().filter_map(line).collect();
+    let path = path(folder.path(), "changed.log");
+    fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+#[test]
+fn runs_that_are_none_are_answered_with_those_there_are() {
+    let talk = refusal(&[&log(), "--fit", "2"]);
+    assert!(talk.contains("no run `2`; there are short.log (1)"), "{talk}");
+    let talk = refusal(&[&log(), "--held", "short"]);
+    assert!(talk.contains("no run is left to fit causes on"), "{talk}");
+    let talk = refusal(&[&log(), "--held", "1", "--fit", "1"]);
+    assert!(talk.contains("both to fit on and to hold out"), "{talk}");
+}
+
+#[test]
+fn a_log_given_twice_is_refused() {
+    let talk = refusal(&[&log(), &log()]);
+    assert!(talk.contains("the same log as"), "{talk}");
+}
+
+#[test]
+fn a_log_that_is_too_short_is_refused_with_its_length() {
+    let (_folder, log) = changed(|at_s, rest| (at_s < 2.0).then(|| (at_s, rest.to_owned())));
+    let talk = refusal(&[&log]);
+    assert!(talk.contains("changed.log: 2.0 s long, and a diagnosis needs 5 s"), "{talk}");
+}
+
+#[test]
+fn a_clock_that_steps_is_refused_with_its_line() {
+    let ahead = |at_s: f64, rest: &str| {
+        Some((if at_s > 5.0 { at_s + 3600.0 } else { at_s }, rest.to_owned()))
+    };
+    let (_folder, log) = changed(ahead);
+    let talk = refusal(&[&log]);
+    assert!(talk.contains("clock steps by +3600.") && talk.contains("changed.log:"), "{talk}");
+    let back =
+        |at_s: f64, rest: &str| Some((if at_s > 5.0 { at_s - 3.0 } else { at_s }, rest.to_owned()));
+    let (_folder, log) = changed(back);
+    let talk = refusal(&[&log]);
+    assert!(talk.contains("clock steps by -") && talk.contains("cut the log before"), "{talk}");
+}
+
+/// Identifier of a message of the bench's database, as a log writes it.
+fn id(message: &str) -> String {
+    let dbc = fs::read_to_string(DBC).unwrap();
+    let line = dbc.lines().find(|line| line.contains(&format!(" {message}: "))).unwrap();
+    let raw: u32 = line.split(' ').nth(1).unwrap().parse().unwrap();
+    if raw > 0x8000_0000 { format!("{:08X}", raw - 0x8000_0000) } else { format!("{raw:03X}") }
+}
+
+#[test]
+fn a_signal_that_was_not_recorded_is_named_with_its_message() {
+    for (message, words) in [
+        ("PosFront", "no frame `PosFront` in the log"),
+        ("DriveCurrent", "steer_current.front_A (DriveCurrent."),
+    ] {
+        let id = format!(" {}#", id(message));
+        let (_folder, log) =
+            changed(|at_s, rest| (!rest.contains(&id)).then(|| (at_s, rest.to_owned())));
+        let talk = refusal(&[&log]);
+        assert!(talk.contains(words), "{talk}");
+    }
+}
+
+#[test]
+fn the_log_of_another_bus_is_refused_with_what_is_on_it() {
+    let other = |at_s: f64, rest: &str| {
+        let data = rest.split_once('#').unwrap().1;
+        Some((at_s, format!(" can0 18FF0001#{data}")))
+    };
+    let (_folder, log) = changed(other);
+    let talk = refusal(&[&log]);
+    assert!(talk.contains("none of its") && talk.contains("18FF0001"), "{talk}");
+}
+
+#[test]
+fn a_mapping_in_another_unit_is_refused_with_what_it_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = path(folder.path(), "m.toml");
+    let text = "[signals]\n\"stroke.FR\" = { signal = \"PosFront.FR\", unit = \"m\" }\n";
+    fs::write(&mapping, text).unwrap();
+    let talk = refusal(&[&log(), "--mapping", &mapping]);
+    assert!(talk.contains("stroke.FR (PosFront.FR) reads"), "{talk}");
+    assert!(talk.contains("check DBC and mapping (signal, unit, scale)"), "{talk}");
+}
+
+#[test]
+fn wheels_in_another_order_are_named_and_not_put_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let mapping = path(folder.path(), "m.toml");
+    let text = "[signals]\n\"stroke.FR\" = \"PosFront.FL\"\n\"stroke.FL\" = \"PosFront.FR\"\n";
+    fs::write(&mapping, text).unwrap();
+    let talk = refusal(&[&log(), "--mapping", &mapping]);
+    assert!(talk.contains("wheels look swapped"), "{talk}");
+    assert!(talk.contains("the stroke of FL follows the target of FR"), "{talk}");
+    assert!(talk.contains("the stroke of FR follows the target of FL"), "{talk}");
+}

@@ -1,0 +1,79 @@
+//! Which effects a set of runs cannot show, because nothing in them made the machine do what the
+//! effect acts on.
+//!
+//! The thresholds are assumed: each is what makes an effect of twice its tolerance stand out of the
+//! noise floors of its block.
+
+mod measure;
+mod need;
+
+use xt28_sim::effects::Effect;
+
+use super::signals::Signals;
+use super::verdict::NotTestable;
+use measure::Excitation;
+use need::Need;
+
+/// What an effect needs to show; those not listed show on a machine that stands.
+const NEEDS: &[(&str, &[Need])] = &[
+    ("arm-gain", &[Need::ArmsMove(0.02)]),
+    ("arm-delay", &[Need::ArmsMove(0.02)]),
+    ("valve-lag", &[Need::ArmsMove(0.02)]),
+    ("valve-hysteresis", &[Need::ArmsTurn(0.02)]),
+    ("valve-deadband", &[Need::ArmsMove(0.02)]),
+    ("valve-gain", &[Need::ArmsMove(0.03)]),
+    ("speed-asymmetry", &[Need::ArmsTurn(0.03)]),
+    ("load-dependent-speed", &[Need::ArmsMove(0.03), Need::LoadsDiffer(15e3)]),
+    ("pump-flow-limit", &[Need::SeveralArms(0.8)]),
+    ("leakage-drift", &[Need::ArmsHold(5.0)]),
+    ("unsupported-sag", &[Need::ArmsUnloaded(1.0)]),
+    ("accumulator-gas", &[Need::LoadsDiffer(15e3)]),
+    ("lock-damping", &[Need::LoadsDiffer(15e3)]),
+    ("seal-stiction", &[Need::ArmsTurn(0.02)]),
+    ("steer-delay", &[Need::Steers(0.05)]),
+    ("steer-lag", &[Need::Steers(0.05)]),
+    ("steer-backlash", &[Need::Steers(0.05)]),
+    ("steer-rate", &[Need::Steers(0.1)]),
+    ("steer-gain", &[Need::Steers(0.05)]),
+    ("rear-follower-lag", &[Need::Steers(0.05)]),
+    ("throttle-delay", &[Need::ThrottleSteps(0.2)]),
+    ("drive-lag", &[Need::ThrottleSteps(0.2)]),
+    ("rolling-resistance", &[Need::Rolls(3.0)]),
+    ("standstill-drag", &[Need::ArmsMoveStanding(0.03)]),
+    ("engine-droop", &[Need::Throttle(0.6)]),
+    ("slippery-ground", &[Need::Fixes, Need::Rolls(5.0)]),
+    ("stroke-scale", &[Need::ArmsMove(0.05)]),
+    ("pressure-scale", &[Need::LoadsDiffer(15e3)]),
+    ("wheel-speed-scale", &[Need::Rolls(3.0)]),
+    ("gnss-latency", &[Need::Fixes, Need::ThrottleSteps(0.2)]),
+    ("gnss-lever-arm", &[Need::Fixes, Need::Steers(0.1)]),
+    ("frame-loss", &[Need::Commands]),
+    ("command-jitter", &[Need::Commands]),
+];
+
+/// The effects of `catalogue` that `runs` cannot show, each with what they lack and the scripted
+/// manoeuvre that has it.
+#[must_use]
+pub fn not_testable(runs: &[Signals], catalogue: &[&'static Effect]) -> Vec<NotTestable> {
+    let excitation = Excitation::of(runs);
+    let judge = |effect: &&'static Effect| {
+        let (_, needs) = NEEDS.iter().find(|(name, _)| *name == effect.name)?;
+        let (need, lacks) = needs.iter().find_map(|need| Some((need, need.unmet(&excitation)?)))?;
+        Some(NotTestable { effect, lacks, manoeuvre: need.manoeuvre().to_owned() })
+    };
+    catalogue.iter().filter_map(judge).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_need_is_of_an_effect_there_is_and_stands_once() {
+        for (i, (name, needs)) in NEEDS.iter().enumerate() {
+            assert!(xt28_sim::effects::find(name).is_some(), "{name}");
+            assert!(NEEDS[..i].iter().all(|(other, _)| other != name), "{name}");
+            assert!(!needs.is_empty());
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! What a set of runs made the machine do, block by block.
+
+use xt28_machine::{PerWheel, Wheel};
+
+use super::super::signals::{DT_S, Samples, Signals};
+
+/// An opening below this is a closed valve: the ECU's currents have no smaller step that flows.
+const CLOSED: f64 = 0.01;
+/// A cylinder that carries less has its wheel in the air, N.
+const UNLOADED_N: f64 = 5.0e3;
+/// Throttle below this is let go.
+const LET_GO: f64 = 0.02;
+/// Wheels slower than this stand, rad/s.
+const STANDS_RAD_S: f64 = 0.05;
+/// Rolling radius for a distance, m; near enough to say whether there was one.
+const RADIUS_M: f64 = 0.74;
+
+/// What one arm did, the most over all runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ArmUse {
+    /// Range of its stroke, m.
+    pub(super) moves_m: f64,
+    /// The lesser of the ways that it went out and in, m.
+    pub(super) turns_m: f64,
+    /// Range of its stroke while throttle was let go and the wheels stood, m.
+    pub(super) moves_standing_m: f64,
+    /// Range of its load, N.
+    pub(super) load_range_n: f64,
+    /// Longest time with the valve shut under load, s.
+    pub(super) holds_s: f64,
+    /// Longest time without load and the valve shut, s.
+    pub(super) unloaded_s: f64,
+}
+
+/// What the machine did, the most over all runs.
+#[derive(Clone, Debug)]
+pub(super) struct Excitation {
+    pub(super) arms: PerWheel<ArmUse>,
+    /// Largest sum of the openings of all arms' valves.
+    pub(super) openings: f64,
+    /// Range of the front joint while the wheels turned, rad.
+    pub(super) steers_rad: f64,
+    /// Largest throttle, 0 to 1.
+    pub(super) throttle: f64,
+    /// Largest step of the throttle.
+    pub(super) throttle_step: f64,
+    /// Way rolled in one run, m.
+    pub(super) rolls_m: f64,
+    /// Changes of any command.
+    pub(super) commands: usize,
+    /// Fixes of a receiver.
+    pub(super) fixes: usize,
+}
+
+impl Excitation {
+    pub(super) fn of(runs: &[Signals]) -> Self {
+        let most = |of: &dyn Fn(&Signals) -> f64| runs.iter().map(of).fold(0.0, f64::max);
+        Self {
+            arms: PerWheel::from_fn(|wheel| arm(runs, wheel)),
+            openings: most(&openings),
+            steers_rad: most(&|s| {
+                let turning = |&i: &usize| s.mean_wheel_speed_rad_s(i).abs() > STANDS_RAD_S;
+                range((0..s.len).filter(turning).map(|i| s.joint_rad[0][i]))
+            }),
+            throttle: most(&|s| s.throttle.iter().fold(0.0, |most, t| t.abs().max(most))),
+            throttle_step: most(&|s| {
+                s.throttle.windows(2).fold(0.0, |most, pair| (pair[1] - pair[0]).abs().max(most))
+            }),
+            rolls_m: most(&|s| {
+                let speeds = (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i).abs());
+                speeds.filter(|speed| *speed > STANDS_RAD_S).sum::<f64>() * DT_S * RADIUS_M
+            }),
+            commands: runs.iter().map(commands).sum(),
+            fixes: runs.iter().map(|s| s.fixes.len()).sum(),
+        }
+    }
+}
+
+fn arm(runs: &[Signals], wheel: Wheel) -> ArmUse {
+    let mut all = ArmUse::default();
+    for s in runs {
+        let (stroke, opening) = (&s.stroke_m[wheel], &s.opening[wheel]);
+        let load = &s.cylinder_load_n[wheel];
+        let (mut out_m, mut in_m) = (0.0, 0.0);
+        for i in 1..s.len {
+            let step = stroke[i] - stroke[i - 1];
+            if opening[i].abs() > CLOSED {
+                if step > 0.0 { out_m += step } else { in_m -= step }
+            }
+        }
+        let stands = |&i: &usize| {
+            s.throttle[i].abs() < LET_GO && s.mean_wheel_speed_rad_s(i).abs() < STANDS_RAD_S
+        };
+        let shut = |i: usize| opening[i].abs() < CLOSED;
+        let one = ArmUse {
+            moves_m: range(stroke.iter().copied()),
+            turns_m: f64::min(out_m, in_m),
+            moves_standing_m: range((0..s.len).filter(stands).map(|i| stroke[i])),
+            load_range_n: range(load.iter().copied()),
+            holds_s: longest_s(s.len, |i| shut(i) && load[i] > UNLOADED_N),
+            unloaded_s: longest_s(s.len, |i| shut(i) && load[i] < UNLOADED_N),
+        };
+        all = ArmUse {
+            moves_m: all.moves_m.max(one.moves_m),
+            turns_m: all.turns_m.max(one.turns_m),
+            moves_standing_m: all.moves_standing_m.max(one.moves_standing_m),
+            load_range_n: all.load_range_n.max(one.load_range_n),
+            holds_s: all.holds_s.max(one.holds_s),
+            unloaded_s: all.unloaded_s.max(one.unloaded_s),
+        };
+    }
+    all
+}
+
+fn range(values: impl Iterator<Item = f64>) -> f64 {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    (high - low).max(0.0)
+}
+
+/// Longest time in one piece for which something holds, s.
+#[allow(clippy::cast_precision_loss)]
+fn longest_s(len: usize, holds: impl Fn(usize) -> bool) -> f64 {
+    let (mut now, mut most) = (0_usize, 0_usize);
+    for i in 0..len {
+        now = if holds(i) { now + 1 } else { 0 };
+        most = most.max(now);
+    }
+    most as f64 * DT_S
+}
+
+fn openings(s: &Signals) -> f64 {
+    let sum = |i: usize| s.opening.iter().map(|(_, opening)| opening[i].abs()).sum::<f64>();
+    (0..s.len).map(sum).fold(0.0, f64::max)
+}
+
+fn commands(s: &Signals) -> usize {
+    let changes = |samples: &Samples| samples.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let arms: usize = s.target_stroke_m.iter().map(|(_, samples)| changes(samples)).sum();
+    arms + changes(&s.throttle) + changes(&s.target_joint_rad)
+}

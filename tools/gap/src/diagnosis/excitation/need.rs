@@ -1,0 +1,114 @@
+//! What an effect needs before it can show, and which scripted manoeuvre has it.
+
+use xt28_machine::{PerWheel, Wheel};
+
+use super::measure::{ArmUse, Excitation};
+
+/// Commands that must change before their lateness or loss says anything.
+const COMMANDS: usize = 3;
+
+/// One thing that the machine must have done; the number is the least that will do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Need {
+    /// Every arm through a range, m.
+    ArmsMove(f64),
+    /// Every arm out and in again, m each way.
+    ArmsTurn(f64),
+    /// Some arm through a range while the machine stands, m.
+    ArmsMoveStanding(f64),
+    /// Every arm under loads that differ, N.
+    LoadsDiffer(f64),
+    /// Every arm under load with its valve shut, s.
+    ArmsHold(f64),
+    /// Some arm without load with its valve shut, s.
+    ArmsUnloaded(f64),
+    /// Several arms at once: sum of the openings.
+    SeveralArms(f64),
+    /// The front joint through a range while the machine moves, rad.
+    Steers(f64),
+    /// A step of the throttle.
+    ThrottleSteps(f64),
+    /// A throttle.
+    Throttle(f64),
+    /// A way, m.
+    Rolls(f64),
+    /// A receiver.
+    Fixes,
+    /// Commands that change.
+    Commands,
+}
+
+impl Need {
+    /// What the runs lack, in words; `None` where they have it.
+    pub(super) fn unmet(self, did: &Excitation) -> Option<String> {
+        let mm = |m: f64| m * 1e3;
+        match self {
+            Self::ArmsMove(m) => idle(&did.arms, |arm| arm.moves_m < m)
+                .map(|who| format!("{who} through less than {:.0} mm", mm(m))),
+            Self::ArmsTurn(m) => idle(&did.arms, |arm| arm.turns_m < m)
+                .map(|who| format!("{who} through less than {:.0} mm both out and in", mm(m))),
+            Self::ArmsMoveStanding(m) => none_of(&did.arms, |arm| arm.moves_standing_m >= m)
+                .then(|| format!("no arm moves by {:.0} mm while the machine stands", mm(m))),
+            Self::LoadsDiffer(n) => {
+                let still = Wheel::ALL.into_iter().filter(|w| did.arms[*w].load_range_n < n);
+                let still: Vec<&str> = still.map(Wheel::name).collect();
+                (!still.is_empty()).then(|| {
+                    format!("the load of {} changes by less than {:.0} kN", still.join(" "), n / 1e3)
+                })
+            }
+            Self::ArmsHold(s) => none_of(&did.arms, |arm| arm.holds_s >= s)
+                .then(|| format!("no arm stands under load with its valve shut for {s:.0} s")),
+            Self::ArmsUnloaded(s) => none_of(&did.arms, |arm| arm.unloaded_s >= s)
+                .then(|| format!("no arm hangs free with its valve shut for {s:.0} s")),
+            Self::SeveralArms(sum) => (did.openings < sum).then(|| {
+                format!(
+                    "the arms' valves are never open by more than {:.2} together, of {sum:.1} needed",
+                    did.openings
+                )
+            }),
+            Self::Steers(rad) => (did.steers_rad < rad).then(|| {
+                let (is, least) = (did.steers_rad.to_degrees(), rad.to_degrees());
+                format!("the front joint goes through {is:.1} deg of {least:.1} deg needed while rolling")
+            }),
+            Self::ThrottleSteps(least) => (did.throttle_step < least).then(|| {
+                format!("no step of the throttle by {:.0} % or more", least * 100.0)
+            }),
+            Self::Throttle(least) => (did.throttle < least).then(|| {
+                let (is, least) = (did.throttle * 100.0, least * 100.0);
+                format!("the throttle goes up to {is:.0} % of {least:.0} % needed")
+            }),
+            Self::Rolls(m) => (did.rolls_m < m)
+                .then(|| format!("no run rolls {m:.0} m; the longest is {:.1} m", did.rolls_m)),
+            Self::Fixes => (did.fixes == 0).then(|| "no fix of a receiver".to_owned()),
+            Self::Commands => (did.commands < COMMANDS).then(|| "no command changes".to_owned()),
+        }
+    }
+
+    /// The scripted manoeuvre that has it.
+    pub(super) const fn manoeuvre(self) -> &'static str {
+        match self {
+            Self::ArmsMove(_) | Self::ArmsTurn(_) | Self::ArmsUnloaded(_) => "single-arm",
+            Self::ArmsMoveStanding(_) | Self::SeveralArms(_) => "arm-step",
+            Self::LoadsDiffer(_) | Self::Commands => "multisine",
+            Self::ArmsHold(_) => "arm-step",
+            Self::Steers(_) => "s-turn",
+            Self::ThrottleSteps(_) | Self::Throttle(_) | Self::Rolls(_) | Self::Fixes => "straight",
+        }
+    }
+}
+
+fn none_of(arms: &PerWheel<ArmUse>, did: impl Fn(&ArmUse) -> bool) -> bool {
+    !arms.iter().any(|(_, arm)| did(arm))
+}
+
+/// "FR FL go" for the arms of which `idle` holds.
+fn idle(arms: &PerWheel<ArmUse>, idle: impl Fn(&ArmUse) -> bool) -> Option<String> {
+    let names: Vec<&str> =
+        arms.iter().filter(|(_, arm)| idle(arm)).map(|(wheel, _)| wheel.name()).collect();
+    match names.len() {
+        0 => None,
+        6 => Some("all arms go".to_owned()),
+        1 => Some(format!("arm {} goes", names[0])),
+        _ => Some(format!("arms {} go", names.join(" "))),
+    }
+}

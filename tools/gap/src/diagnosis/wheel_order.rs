@@ -1,0 +1,108 @@
+//! Whether commands and readings of the arms are of the same wheels: a mapping that swaps two wheels
+//! makes every arm look broken.
+
+use core::fmt;
+
+use xt28_machine::{PerWheel, Wheel};
+use xt28_sim::effects::Lag;
+
+use super::signals::{DT_S, Samples, Signals};
+
+/// How fast an arm follows its target, s: 1 / (0.004 per mm times 212 mm/s), the paper's PI.
+const FOLLOWS_S: f64 = 1.18;
+/// Mode of the arms in which targets count.
+const MANUAL_POSITION: f64 = 2.0;
+/// A correlation above this says that one moves the other, ...
+const MOVES: f64 = 0.9;
+/// ... and below this that it does not. In between nothing is said: faults lie there.
+const MOVES_NOT: f64 = 0.6;
+/// Samples between two that are looked at.
+const STRIDE: usize = 10;
+
+/// Wheels that look swapped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Swap {
+    /// What is commanded, and what is read.
+    pub between: [&'static str; 2],
+    /// The wheel of a command, and the wheel whose reading follows it.
+    pub pairs: Vec<(Wheel, Wheel)>,
+}
+
+/// Wheels whose readings follow the commands of another and not their own; `None` where every
+/// reading follows its own command, or where the commands do not tell.
+#[must_use]
+pub fn swapped_wheels(runs: &[Signals]) -> Option<Swap> {
+    let targets = |s: &Signals, w: Wheel| {
+        let mut followed = Lag::new(s.target_stroke_m[w].first().copied().unwrap_or_default());
+        s.target_stroke_m[w].iter().map(|t| followed.step(*t, FOLLOWS_S, DT_S)).collect()
+    };
+    let strokes = |s: &Signals, w: Wheel| s.stroke_m[w].clone();
+    let openings = |s: &Signals, w: Wheel| s.opening[w].clone();
+    let rates = |s: &Signals, w: Wheel| s.stroke_rate_m_s[w].clone();
+    compare(runs, ["target", "stroke"], &targets, &strokes)
+        .or_else(|| compare(runs, ["valve current", "stroke"], &openings, &rates))
+}
+
+type Of<'a> = &'a dyn Fn(&Signals, Wheel) -> Samples;
+
+fn compare(runs: &[Signals], between: [&'static str; 2], cause: Of, effect: Of) -> Option<Swap> {
+    let (causes, effects) = (gather(runs, cause), gather(runs, effect));
+    let r = PerWheel::from_fn(|w| PerWheel::from_fn(|v| correlation(&causes[w], &effects[v])));
+    let follower = |w: Wheel| {
+        let other =
+            |v: &Wheel| *v != w && r[w][w] < MOVES_NOT && r[*v][*v] < MOVES_NOT && r[w][*v] > MOVES;
+        Wheel::ALL.into_iter().filter(other).max_by(|a, b| r[w][*a].total_cmp(&r[w][*b]))
+    };
+    let mut pairs: Vec<(Wheel, Wheel)> =
+        Wheel::ALL.into_iter().filter_map(|w| Some((w, follower(w)?))).collect();
+    // Another order is one in which every wheel is somebody's.
+    loop {
+        let before = pairs.clone();
+        let closed = |(w, v): &(Wheel, Wheel)| {
+            before.iter().any(|(_, to)| to == w) && before.iter().any(|(from, _)| from == v)
+        };
+        pairs.retain(closed);
+        if pairs.len() == before.len() {
+            break;
+        }
+    }
+    (!pairs.is_empty()).then_some(Swap { between, pairs })
+}
+
+/// Samples in manual position, a few a second, each less the mean of the six wheels: what all arms do
+/// alike tells none from another. Then less the mean of its run.
+#[allow(clippy::cast_precision_loss)]
+fn gather(runs: &[Signals], of: Of) -> PerWheel<Samples> {
+    let mut all = PerWheel::from_fn(|_| Samples::new());
+    for s in runs {
+        let wheels = PerWheel::from_fn(|w| of(s, w));
+        let manual = |i: &usize| s.arm_mode[*i] == MANUAL_POSITION;
+        let used: Vec<usize> = (0..s.len).step_by(STRIDE).filter(manual).collect();
+        let apart = |w: Wheel, i: usize| {
+            wheels[w][i] - wheels.iter().map(|(_, samples)| samples[i]).sum::<f64>() / 6.0
+        };
+        for w in Wheel::ALL {
+            let mean = used.iter().map(|i| apart(w, *i)).sum::<f64>() / used.len().max(1) as f64;
+            all[w].extend(used.iter().map(|i| apart(w, *i) - mean));
+        }
+    }
+    all
+}
+
+/// Pearson's coefficient of centred samples; zero where one of them does not move.
+fn correlation(a: &Samples, b: &Samples) -> f64 {
+    let dot = |a: &Samples, b: &Samples| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let scale = (dot(a, a) * dot(b, b)).sqrt();
+    if scale > 0.0 { dot(a, b) / scale } else { 0.0 }
+}
+
+impl fmt::Display for Swap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [command, reading] = self.between;
+        for (i, (commanded, follows)) in self.pairs.iter().enumerate() {
+            let comma = if i > 0 { ", " } else { "" };
+            write!(f, "{comma}the {reading} of {follows} follows the {command} of {commanded}")?;
+        }
+        Ok(())
+    }
+}

@@ -9,7 +9,9 @@
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
 mod arms;
+mod candidates;
 mod controllers;
+mod descent;
 mod diagnose;
 mod driving;
 mod evidence;
@@ -18,21 +20,27 @@ mod generator;
 mod hypothesis;
 mod inquiry;
 mod joints;
+mod judgement;
 mod knob;
+mod search;
 mod signals;
+mod stack;
 mod stance;
 mod stands;
 mod travel;
 mod verdict;
 mod wheel_order;
 
+pub use candidates::Candidate;
 pub use diagnose::Progress;
-pub use evidence::Evidence;
+pub use evidence::{Belief, Evidence, Left};
 pub use excitation::not_testable;
 pub use generator::{Floor, Generator, Residual, Signal};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
+pub use judgement::Findings;
 pub use knob::{Knob, TOLERANCES, Tolerance};
+pub use search::search;
 pub(crate) use signals::needed;
 pub use signals::{DT_S, Samples, Signals};
 pub use verdict::{

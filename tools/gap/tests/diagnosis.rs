@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals};
+use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals, search};
 use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay, Terrain};
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::{Overlay, Scope};
+use xt28_sim::effects::{CATALOGUE, Overlay, Scope};
 use xt28_sim::{Effects, Solver};
 
 #[allow(clippy::disallowed_macros)] // A test that skips says so.
@@ -35,8 +35,8 @@ fn gaps(folder: &Path, names: &[&str]) -> Vec<(Generator, f64)> {
             Signals::new(&log, terrain).unwrap()
         })
         .collect();
-    let evidence = Evidence::new(&runs, &Machine::xt28(), Effects::default(), Knob::tolerances());
-    evidence.left(&evidence.base)
+    let evidence = Evidence::new(&runs, &Machine::xt28(), Effects::default(), &Knob::tolerances());
+    evidence.gaps()
 }
 
 #[test]
@@ -79,11 +79,12 @@ fn fitted(effect: &str, scope: Scope, run: &str, overlay: &str) -> Option<(f64, 
     }
     let signals = Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap();
     let runs = [signals];
-    let evidence = Evidence::new(&runs, &machine, Effects::default(), Knob::all());
-    let hypothesis =
-        Hypothesis::all().into_iter().find(|h| h.effect.name == effect && h.scope == scope)?;
-    let fit = hypothesis.fit(&evidence, evidence.base_cost());
-    Some((fit.log_evidence, fit.values))
+    let evidence = Evidence::new(&runs, &machine, Effects::default(), &Knob::all());
+    let fits = search(&evidence, &CATALOGUE.iter().collect::<Vec<_>>(), 0.0);
+    let best = fits.first().expect("something explains it");
+    let Hypothesis { effect: found, scope: place } = best.hypothesis;
+    assert_eq!((found.name, place), (effect, scope));
+    Some((best.log_evidence, best.values.clone()))
 }
 
 #[test]

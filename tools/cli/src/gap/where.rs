@@ -64,8 +64,8 @@ impl Where {
             };
             runs.push(Signals::new(&log, ground)?);
         }
-        let evidence = Evidence::new(&runs, &machine, effects.effects(), Knob::tolerances());
-        let mut gaps = evidence.left(&evidence.base);
+        let evidence = Evidence::new(&runs, &machine, effects.effects(), &Knob::tolerances());
+        let mut gaps = evidence.gaps();
         gaps.sort_by(|(_, a), (_, b)| b.total_cmp(a));
         if self.json {
             let rows = gaps.iter().map(|(generator, gap)| {

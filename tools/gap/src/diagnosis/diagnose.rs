@@ -1,15 +1,13 @@
 //! The whole diagnosis of one inquiry, step after step.
 
-use rayon::prelude::*;
-
-use xt28_sim::effects::Parameter;
-
-use super::evidence::Evidence;
-use super::excitation::not_testable;
-use super::hypothesis::{Fit, Hypothesis};
+use super::candidates::{Candidate, Docket};
 use super::inquiry::Inquiry;
-use super::knob::Knob;
-use super::verdict::{Cause, Diagnosis, Estimate, Verdict};
+use super::judgement::{Findings, judge};
+use super::signals::Signals;
+use super::verdict::Diagnosis;
+
+/// A second cause must be worth this much, nats.
+const SECOND_MIN: f64 = 12.0;
 
 /// How far a diagnosis has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,49 +22,66 @@ impl Inquiry {
     /// The answer. `progress` hears of every step, from any thread.
     #[must_use]
     pub fn diagnose(&self, progress: &(dyn Fn(Progress) + Sync)) -> Diagnosis {
-        progress(Progress { stage: "driving blocks with what was measured", done: 0.0 });
-        let runs: Vec<_> = self.runs.iter().map(|run| run.signals.clone()).collect();
-        let evidence = Evidence::new(&runs, &self.machine, self.believed.clone(), Knob::all());
-        let base = evidence.base_cost();
-        let mut fits: Vec<Fit> = Hypothesis::all()
-            .into_par_iter()
-            .filter(|h| self.catalogue.contains(&h.effect))
-            .map(|h| h.fit(&evidence, base))
-            .collect();
-        fits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-        let best = fits.first().map_or(0.0, |fit| fit.log_evidence.max(0.0));
-        let total: f64 =
-            (-best).exp() + fits.iter().map(|fit| (fit.log_evidence - best).exp()).sum::<f64>();
-        let cause = |fit: &Fit| Cause {
-            effect: fit.hypothesis.effect,
-            scope: fit.hypothesis.scope,
-            probability: (fit.log_evidence - best).exp() / total,
-            parameters: estimates(fit),
-            class: vec![fit.hypothesis.effect.name],
-            begins: None,
-            shrink: None,
-        };
-        let causes: Vec<Cause> = fits.iter().take(10).map(cause).collect();
-        let stands = causes.first().is_some_and(|cause| cause.probability > 0.5);
-        Diagnosis {
-            verdict: if stands { Verdict::Effect } else { Verdict::None },
-            places: Vec::new(),
-            causes,
-            probability_none: (-best).exp() / total,
-            probability_unknown: 0.0,
-            together: None,
-            next: None,
-            not_testable: not_testable(&runs, &self.catalogue),
-            notes: Vec::new(),
-            seconds: 0.0,
-        }
+        judge(self, &self.findings(progress))
     }
-}
 
-fn estimates(fit: &Fit) -> Vec<Estimate> {
-    let one = |(parameter, value): (&'static Parameter, &f64)| Estimate {
-        name: parameter.name,
-        value: [*value; 3],
-    };
-    fit.hypothesis.effect.parameters.iter().zip(&fit.values).map(one).collect()
+    /// What the logs say of every hypothesis, before it is judged.
+    #[must_use]
+    pub fn findings(&self, progress: &(dyn Fn(Progress) + Sync)) -> Findings {
+        let tell = |stage, done| progress(Progress { stage, done });
+        let of = |fit: bool| -> Vec<Signals> {
+            let runs = self.runs.iter().filter(|run| run.fit == fit);
+            runs.map(|run| run.signals.clone()).collect()
+        };
+        let (fit, held) = (of(true), of(false));
+        let docket = |base: &_| Docket::new(&fit, &held, &self.machine, base);
+        tell("driving every block with what was measured", 0.0);
+        let first = docket(&self.believed);
+        let before = first.left(&[]);
+        tell("trying every cause", 0.05);
+        let single = first.candidates(&self.catalogue);
+        let Some(best) = single.first().cloned() else {
+            return Findings { before, single, pair: Vec::new(), after: Vec::new() };
+        };
+        tell("trying second causes", 0.4);
+        let pair = self.second(&docket, &best);
+        tell("looking at what is left", 0.7);
+        let after = match pair.first() {
+            Some([first, second]) => {
+                let base = first.fit.hypothesis.applied(&self.believed, &first.fit.values);
+                docket(&base).left(&[&second.fit])
+            }
+            None => first.left(&[&best.fit]),
+        };
+        Findings { before, single, pair, after }
+    }
+
+    /// Two causes at once, the best first; none where one is enough.
+    ///
+    /// With the first believed, a second is sought; with that believed, the first is sought anew,
+    /// for it was found while the second still disturbed.
+    fn second<'a>(
+        &self,
+        docket: &dyn Fn(&xt28_sim::Effects) -> Docket<'a>,
+        best: &Candidate,
+    ) -> Vec<[Candidate; 2]> {
+        let beside = |one: &Candidate| {
+            let base = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
+            let others: Vec<_> = self
+                .catalogue
+                .iter()
+                .copied()
+                .filter(|effect| *effect != one.fit.hypothesis.effect)
+                .collect();
+            docket(&base).candidates(&others)
+        };
+        let seconds = beside(best);
+        let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN) else {
+            return Vec::new();
+        };
+        let firsts = beside(second);
+        let again = firsts.first().filter(|first| first.score() > SECOND_MIN).cloned();
+        let first = again.unwrap_or_else(|| best.clone());
+        seconds.into_iter().take(10).map(|second| [first.clone(), second]).collect()
+    }
 }

@@ -1,4 +1,13 @@
-//! Residuals of all runs as one least-squares problem, linear in every tolerance.
+//! Residuals of all runs as one problem: linear in every tolerance, each signal with a scale of its own.
+//!
+//! A sound machine's residuals lie about one floor; a block that the simulator does not quite know lies
+//! higher. So the scale of each signal is unknown too: its square is drawn about one, worth
+//! [`SCALE_SAMPLES`] samples of belief, and integrated out. What it costs to believe something is then,
+//! with RSS the squares that a signal leaves and N its independent samples,
+//! `sum (N + nu) ln(1 + RSS / nu)`: a block that nothing explains raises its own scale and does not
+//! drown the others.
+
+use std::borrow::Cow;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
@@ -7,10 +16,16 @@ use xt28_sim::Effects;
 
 use super::generator::{Generator, Signal};
 use super::knob::Knob;
+use super::search::Memory;
 use super::signals::Signals;
+use super::stack::Stack;
 
 /// Share of a knob's tolerance by which it is nudged.
 const NUDGE: f64 = 0.05;
+/// How many samples one's belief in a floor is worth.
+const SCALE_SAMPLES: f64 = 10.0;
+/// Rounds in which scales and tolerances settle on each other.
+const ROUNDS: usize = 4;
 
 /// What the logs say about every knob, around one state of belief.
 pub struct Evidence<'a> {
@@ -18,31 +33,64 @@ pub struct Evidence<'a> {
     machine: Machine,
     /// What is believed beside the tolerances: effects found so far.
     pub base: Effects,
-    knobs: Vec<Knob>,
-    generators: Vec<Watch>,
+    watches: Vec<Watch>,
+    /// Cost of the base.
+    base_cost: f64,
     /// Of the knobs' posterior precision.
     factor: Cholesky<f64, Dyn>,
-    /// Weighted squares of the base, and their slopes by knob.
-    squares: f64,
-    gradient: DVector<f64>,
+    knobs: Vec<Knob>,
 }
 
 /// One generator with its residuals at the base and their slopes.
 struct Watch {
-    generator: Generator,
-    base: Stack,
-    /// Knobs it answers to, and how, per sample and tolerance.
-    slopes: Vec<(usize, Vec<f64>)>,
+    stack: Stack,
+    /// Knobs it answers to.
+    knobs: Vec<usize>,
+    /// How it answers to each, per sample and tolerance.
+    slopes: Vec<Vec<f64>>,
+    /// Products of slopes in each group.
+    products: Vec<DMatrix<f64>>,
+    /// Weight of each group at the base, when tolerances are set.
+    weights: Vec<f64>,
+    /// Of the base.
+    sums: Sums,
 }
 
-/// Residuals of one generator over all runs, each sample times the root of its weight.
-#[derive(Clone, Debug, Default)]
-struct Stack {
-    /// Samples that can be judged.
-    values: Vec<f64>,
-    /// Where each signal's samples of each run end.
-    ends: Vec<(usize, Signal, usize)>,
-    mask: Vec<bool>,
+/// What the cost needs to know of one generator's residuals.
+#[derive(Clone, Debug)]
+pub(super) struct Sums {
+    /// Squares in each group.
+    squares: Vec<f64>,
+    /// Slopes times residuals in each group, by the watch's own knobs.
+    gradients: Vec<DVector<f64>>,
+}
+
+/// What one signal leaves.
+#[derive(Clone, Copy, Debug)]
+pub struct Left {
+    /// Who watches it.
+    pub generator: Generator,
+    /// The signal.
+    pub signal: Signal,
+    /// Mean square in units of the floor; about one where nothing but the floor is left.
+    pub square: f64,
+    /// Independent samples.
+    pub samples: f64,
+}
+
+/// Something to believe, and from when on in every run, s.
+#[derive(Clone, Copy, Debug)]
+pub struct Belief<'e> {
+    /// The effects.
+    pub effects: &'e Effects,
+    /// Before this instant of every run the base holds.
+    pub from_s: f64,
+}
+
+impl<'e> From<&'e Effects> for Belief<'e> {
+    fn from(effects: &'e Effects) -> Self {
+        Self { effects, from_s: 0.0 }
+    }
 }
 
 impl<'a> Evidence<'a> {
@@ -51,107 +99,190 @@ impl<'a> Evidence<'a> {
     /// # Panics
     /// Where a residual is not a number under the nominal machine.
     #[must_use]
-    pub fn new(runs: &'a [Signals], machine: &Machine, base: Effects, knobs: Vec<Knob>) -> Self {
-        let generators: Vec<Watch> = Generator::all()
+    pub fn new(runs: &'a [Signals], machine: &Machine, base: Effects, knobs: &[Knob]) -> Self {
+        let watches: Vec<Watch> = Generator::all()
             .into_par_iter()
-            .map(|generator| Watch::new(generator, runs, machine, &base, &knobs))
+            .map(|generator| Watch::new(generator, runs, machine, &base, knobs))
             .collect();
-        let n = knobs.len();
-        let mut precision = DMatrix::<f64>::identity(n, n);
-        for watch in &generators {
-            for (i, (a, left)) in watch.slopes.iter().enumerate() {
-                for (b, right) in &watch.slopes[i..] {
-                    let product: f64 = left.iter().zip(right).map(|(l, r)| l * r).sum();
-                    precision[(*a, *b)] += product;
-                    if a != b {
-                        precision[(*b, *a)] += product;
-                    }
-                }
-            }
+        let factor = precision(&watches, knobs.len());
+        let mut evidence = Self {
+            runs,
+            machine: machine.clone(),
+            base,
+            watches,
+            base_cost: 0.0,
+            factor,
+            knobs: knobs.to_vec(),
+        };
+        for _ in 0..ROUNDS {
+            evidence.settle();
         }
-        let factor = Cholesky::new(precision).expect("a sum of squares and the identity");
-        let squares = generators.iter().map(|watch| square(&watch.base.values)).sum();
-        let mut gradient = DVector::zeros(n);
-        for watch in &generators {
-            for (knob, slope) in &watch.slopes {
-                gradient[*knob] +=
-                    slope.iter().zip(&watch.base.values).map(|(s, r)| s * r).sum::<f64>();
-            }
-        }
-        Self { runs, machine: machine.clone(), base, knobs, generators, factor, squares, gradient }
+        evidence.base_cost = evidence.cost(&evidence.base, &|_| false);
+        evidence
     }
 
-    /// What it costs to believe `effects`, with the tolerances at their best around the base.
+    /// What it costs to believe, with the tolerances at their best around the base.
     ///
     /// `only` are the generators that can differ from the base.
     #[must_use]
-    pub fn cost(&self, effects: &Effects, only: &dyn Fn(Generator) -> bool) -> f64 {
-        let (mut squares, mut gradient) = (self.squares, self.gradient.clone());
-        for watch in self.generators.iter().filter(|watch| only(watch.generator)) {
-            let stack = watch.base.again(watch.generator, self.runs, &self.machine, effects);
-            squares += square(&stack) - square(&watch.base.values);
-            for (knob, slope) in &watch.slopes {
-                let change = slope.iter().zip(stack.iter().zip(&watch.base.values));
-                gradient[*knob] += change.map(|(s, (r, b))| s * (r - b)).sum::<f64>();
-            }
-        }
-        squares - gradient.dot(&self.factor.solve(&gradient))
+    pub fn cost<'e>(&self, belief: impl Into<Belief<'e>>, only: &dyn Fn(Generator) -> bool) -> f64 {
+        self.cost_of(&self.sums(belief.into(), only))
     }
 
-    /// What is left on each generator under `effects`, tolerances at their best: mean square in
-    /// units of the floor, one where nothing but the floor is left.
-    #[must_use]
-    pub fn left(&self, effects: &Effects) -> Vec<(Generator, f64)> {
-        let mut gradient = DVector::<f64>::zeros(self.knobs.len());
-        let stack =
-            |watch: &Watch| watch.base.again(watch.generator, self.runs, &self.machine, effects);
-        let stacks: Vec<Vec<f64>> = self.generators.iter().map(stack).collect();
-        for (watch, stack) in self.generators.iter().zip(&stacks) {
-            for (knob, slope) in &watch.slopes {
-                gradient[*knob] += slope.iter().zip(stack).map(|(s, r)| s * r).sum::<f64>();
+    /// The same; what generators of one wheel say of `values` there is remembered.
+    pub(super) fn cost_remembered(
+        &self,
+        belief: Belief<'_>,
+        only: &dyn Fn(Generator) -> bool,
+        values: &[f64],
+        memory: &mut Memory,
+    ) -> f64 {
+        let mut sums = |watch: &Watch| {
+            let generator = watch.stack.generator;
+            if !only(generator) {
+                return Cow::Owned(watch.sums.clone());
+            }
+            let again = || watch.again(self.runs, &self.machine, belief);
+            if generator.wheel().is_none() {
+                return Cow::Owned(again());
+            }
+            let bits = values.iter().map(|value| value.to_bits()).collect();
+            Cow::Owned(memory.entry((generator, bits)).or_insert_with(again).clone())
+        };
+        let sums: Vec<_> = self.watches.iter().map(&mut sums).collect();
+        self.cost_of(&sums)
+    }
+
+    fn cost_of(&self, sums: &[Cow<'_, Sums>]) -> f64 {
+        let step = self.step(sums);
+        let left = self.remaining(sums, &step);
+        let mut cost = step.norm_squared();
+        for (watch, squares) in self.watches.iter().zip(&left) {
+            for (group, square) in watch.stack.groups.iter().zip(squares) {
+                cost += (SCALE_SAMPLES + group.samples) * (square / SCALE_SAMPLES).ln_1p();
             }
         }
-        let step = self.factor.solve(&gradient);
-        let left = |(watch, mut stack): (&Watch, Vec<f64>)| {
-            for (knob, slope) in &watch.slopes {
-                let by = step[*knob];
-                stack.iter_mut().zip(slope).for_each(|(r, s)| *r -= by * s);
+        cost
+    }
+
+    /// What is left on each signal, tolerances at their best.
+    #[must_use]
+    pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
+        let sums = self.sums(belief.into(), &|_| true);
+        let step = self.step(&sums);
+        let mut all = Vec::new();
+        for (watch, squares) in self.watches.iter().zip(self.remaining(&sums, &step)) {
+            for (group, square) in watch.stack.groups.iter().zip(squares) {
+                all.push(Left {
+                    generator: watch.stack.generator,
+                    signal: group.signal,
+                    square: square / group.samples.max(1.0),
+                    samples: group.samples,
+                });
             }
-            (watch.generator, square(&stack) / watch.samples().max(1.0))
+        }
+        all
+    }
+
+    /// What each generator leaves under the base: mean square of its signals in units of their floors.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<(Generator, f64)> {
+        let left = self.left(&self.base);
+        let gap = |watch: &Watch| {
+            let own = left.iter().filter(|left| left.generator == watch.stack.generator);
+            let (squares, samples) = own.fold((0.0, 0.0), |(squares, samples), left| {
+                (squares + left.square * left.samples, samples + left.samples)
+            });
+            (watch.stack.generator, squares / f64::max(samples, 1.0))
         };
-        self.generators.iter().zip(stacks).map(left).collect()
+        self.watches.iter().map(gap).collect()
     }
 
     /// Where all knobs at once come to lie, each by how many of its tolerances from the base.
     #[must_use]
     pub fn shifts(&self) -> Vec<(Knob, f64)> {
-        let shifts = self.factor.solve(&self.gradient);
-        self.knobs.iter().copied().zip(shifts.iter().map(|shift| -shift)).collect()
+        let step = self.step(&self.sums((&self.base).into(), &|_| false));
+        self.knobs.iter().copied().zip(step.iter().copied()).collect()
     }
 
     /// Cost of the base.
     #[must_use]
-    pub fn base_cost(&self) -> f64 {
-        self.cost(&self.base, &|_| false)
+    pub const fn base_cost(&self) -> f64 {
+        self.base_cost
+    }
+
+    /// Scales from what the base leaves, then tolerances weighted by them.
+    fn settle(&mut self) {
+        let sums: Vec<_> = self.watches.iter().map(|watch| Cow::Borrowed(&watch.sums)).collect();
+        let left = self.remaining(&sums, &self.step(&sums));
+        for (watch, squares) in self.watches.iter_mut().zip(&left) {
+            let weigh = |(group, square): (&super::stack::Group, &f64)| {
+                (SCALE_SAMPLES + group.samples) / (SCALE_SAMPLES + square)
+            };
+            watch.weights = watch.stack.groups.iter().zip(squares).map(weigh).collect();
+        }
+        self.factor = precision(&self.watches, self.knobs.len());
+    }
+
+    fn sums<'s>(
+        &'s self,
+        belief: Belief<'_>,
+        only: &dyn Fn(Generator) -> bool,
+    ) -> Vec<Cow<'s, Sums>> {
+        let sums = |watch: &'s Watch| {
+            if only(watch.stack.generator) {
+                Cow::Owned(watch.again(self.runs, &self.machine, belief))
+            } else {
+                Cow::Borrowed(&watch.sums)
+            }
+        };
+        self.watches.iter().map(sums).collect()
+    }
+
+    /// Where the tolerances go, in units of their own.
+    fn step(&self, sums: &[Cow<'_, Sums>]) -> DVector<f64> {
+        let mut gradient = DVector::zeros(self.knobs.len());
+        for (watch, sums) in self.watches.iter().zip(sums) {
+            for (weight, slopes) in watch.weights.iter().zip(&sums.gradients) {
+                for (knob, slope) in watch.knobs.iter().zip(slopes.iter()) {
+                    gradient[*knob] -= weight * slope;
+                }
+            }
+        }
+        self.factor.solve(&gradient)
+    }
+
+    /// Squares of each watch's groups once the tolerances have gone by `step`.
+    fn remaining(&self, sums: &[Cow<'_, Sums>], step: &DVector<f64>) -> Vec<Vec<f64>> {
+        let of = |(watch, sums): (&Watch, &Sums)| {
+            let own =
+                DVector::from_iterator(watch.knobs.len(), watch.knobs.iter().map(|k| step[*k]));
+            let group = |(square, (gradient, product)): (&f64, (&DVector<f64>, &DMatrix<f64>))| {
+                (square + 2.0 * gradient.dot(&own) + own.dot(&(product * &own))).max(0.0)
+            };
+            let each = sums.squares.iter().zip(sums.gradients.iter().zip(&watch.products));
+            each.map(group).collect()
+        };
+        self.watches.iter().zip(sums.iter().map(Cow::as_ref)).map(of).collect()
     }
 }
 
-fn square(values: &[f64]) -> f64 {
-    values.iter().map(|r| r * r).sum()
+/// Precision of the knobs, in units of their tolerances: one's belief and every watch's word.
+fn precision(watches: &[Watch], knobs: usize) -> Cholesky<f64, Dyn> {
+    let mut precision = DMatrix::<f64>::identity(knobs, knobs);
+    for watch in watches {
+        for (weight, product) in watch.weights.iter().zip(&watch.products) {
+            for (i, a) in watch.knobs.iter().enumerate() {
+                for (j, b) in watch.knobs.iter().enumerate() {
+                    precision[(*a, *b)] += weight * product[(i, j)];
+                }
+            }
+        }
+    }
+    Cholesky::new(precision).expect("a sum of squares and the identity")
 }
 
 impl Watch {
-    /// Number of independent samples.
-    #[allow(clippy::cast_precision_loss)]
-    fn samples(&self) -> f64 {
-        let (mut from, mut sum) = (0, 0.0);
-        for (_, signal, end) in &self.base.ends {
-            sum += (end - from) as f64 * signal.weight();
-            from = *end;
-        }
-        sum
-    }
-
     fn new(
         generator: Generator,
         runs: &[Signals],
@@ -171,57 +302,62 @@ impl Watch {
                 Knob::Effect(_, parameter, scope) => parameter.get(base, *scope),
                 Knob::Machine(_) => 1.0,
             };
-            let step = NUDGE * knob.tolerance();
-            knob.set(&mut machine, &mut effects, at + step);
-            let nudged = stack.again(generator, runs, &machine, &effects);
+            knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
+            let nudged = stack.again(runs, &machine, &effects);
             let slope: Vec<f64> =
                 nudged.iter().zip(&stack.values).map(|(n, b)| (n - b) / NUDGE).collect();
             slope.iter().any(|s| *s != 0.0).then_some(slope)
         };
-        let slopes = knobs.iter().enumerate().filter_map(|(i, knob)| Some((i, slope(knob)?)));
-        let slopes = slopes.collect();
-        Self { generator, base: stack, slopes }
-    }
-}
-
-impl Stack {
-    fn new(generator: Generator, runs: &[Signals], machine: &Machine, effects: &Effects) -> Self {
-        let mut stack = Self::default();
-        for (index, run) in runs.iter().enumerate() {
-            for residual in generator.residuals(run, machine, effects) {
-                let root = residual.signal.weight().sqrt();
-                for value in residual.values {
-                    stack.mask.push(value.is_finite());
-                    if value.is_finite() {
-                        stack.values.push(value * root);
-                    }
-                }
-                stack.ends.push((index, residual.signal, stack.values.len()));
+        let (mut own, mut slopes) = (Vec::new(), Vec::new());
+        for (index, knob) in knobs.iter().enumerate() {
+            if let Some(slope) = slope(knob) {
+                own.push(index);
+                slopes.push(slope);
             }
         }
-        stack
-    }
-
-    /// The same samples under another belief; those that were judged are judged again.
-    fn again(
-        &self,
-        generator: Generator,
-        runs: &[Signals],
-        machine: &Machine,
-        effects: &Effects,
-    ) -> Vec<f64> {
-        let mut values = Vec::with_capacity(self.values.len());
-        let mut mask = self.mask.iter();
-        for run in runs {
-            for residual in generator.residuals(run, machine, effects) {
-                let root = residual.signal.weight().sqrt();
-                for value in residual.values {
-                    if mask.next() == Some(&true) {
-                        values.push(if value.is_finite() { value * root } else { 0.0 });
-                    }
+        let groups = stack.groups.len();
+        let mut products = vec![DMatrix::zeros(own.len(), own.len()); groups];
+        for (i, a) in slopes.iter().enumerate() {
+            for (j, b) in slopes.iter().enumerate().skip(i) {
+                for ((l, r), &group) in a.iter().zip(b).zip(&stack.group) {
+                    products[group][(i, j)] += l * r;
+                }
+                for product in &mut products {
+                    product[(j, i)] = product[(i, j)];
                 }
             }
         }
-        values
+        let mut watch = Self {
+            stack,
+            knobs: own,
+            slopes,
+            products,
+            weights: vec![1.0; groups],
+            sums: Sums { squares: Vec::new(), gradients: Vec::new() },
+        };
+        watch.sums = watch.sums_of(&watch.stack.values);
+        watch
+    }
+
+    fn again(&self, runs: &[Signals], machine: &Machine, belief: Belief<'_>) -> Sums {
+        let mut values = self.stack.again(runs, machine, belief.effects);
+        if belief.from_s > 0.0 {
+            for (i, value) in values.iter_mut().enumerate() {
+                if self.stack.at_s[i] < belief.from_s {
+                    *value = self.stack.values[i];
+                }
+            }
+        }
+        self.sums_of(&values)
+    }
+
+    fn sums_of(&self, values: &[f64]) -> Sums {
+        let mut gradients = vec![DVector::zeros(self.knobs.len()); self.stack.groups.len()];
+        for (knob, slope) in self.slopes.iter().enumerate() {
+            for ((s, r), &group) in slope.iter().zip(values).zip(&self.stack.group) {
+                gradients[group][knob] += s * r;
+            }
+        }
+        Sums { squares: self.stack.squares(values), gradients }
     }
 }

@@ -148,6 +148,15 @@ impl Generator {
         }
     }
 
+    /// The wheel that it looks at, where it looks at one alone.
+    #[must_use]
+    pub const fn wheel(self) -> Option<Wheel> {
+        match self {
+            Self::ArmStroke(wheel) | Self::ArmEcu(wheel) => Some(wheel),
+            _ => None,
+        }
+    }
+
     /// The block it watches.
     #[must_use]
     pub const fn block(self) -> Block {
@@ -234,5 +243,27 @@ impl fmt::Display for Generator {
             Self::Stance => f.write_str("stance"),
             Self::Travel => f.write_str("travel"),
         }
+    }
+}
+
+impl fmt::Display for Signal {
+    /// The signal's name in verdicts.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stroke => "stroke",
+            Self::ArmOpening => "arm opening",
+            Self::JointAngle => "joint angle",
+            Self::SteerOpening => "steering opening",
+            Self::DriveSpeed => "mean wheel speed",
+            Self::DrivePressure => "pump pressure",
+            Self::Roll => "roll",
+            Self::Pitch => "pitch",
+            Self::Weight => "weight",
+            Self::WeightX => "place of the weight, forward",
+            Self::WeightY => "place of the weight, left",
+            Self::WheelSpeed(_) => "wheel speed",
+            Self::TravelSpeed => "speed over ground",
+            Self::TravelCourse => "course over ground",
+        })
     }
 }

@@ -3,7 +3,8 @@
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
 
-use super::evidence::Evidence;
+use super::descent::descend;
+use super::evidence::{Belief, Evidence};
 use super::generator::Generator;
 
 /// An effect at a scope.
@@ -22,21 +23,44 @@ pub struct Fit {
     pub hypothesis: Hypothesis,
     /// One value a parameter.
     pub values: Vec<f64>,
-    /// What is left.
-    pub cost: f64,
-    /// Logarithm of the evidence, less that of the base.
+    /// Standard deviation of each value.
+    pub sigma: Vec<f64>,
+    /// Before this instant of every run it is not there, s.
+    pub from_s: f64,
+    /// Logarithm of its evidence over that of the base, prior included.
     pub log_evidence: f64,
 }
 
 impl Hypothesis {
-    /// Every effect at every scope it can have.
+    /// Every one of `effects` at every scope that it can have.
     #[must_use]
-    pub fn all() -> Vec<Self> {
-        let scopes = |effect: &'static Effect| {
+    pub fn of(effects: &[&'static Effect]) -> Vec<Self> {
+        let scopes = |&effect: &&'static Effect| {
             let scopes = if effect.has_scope() { &Scope::ALL[..] } else { &Scope::ALL[..1] };
             scopes.iter().map(move |&scope| Self { effect, scope })
         };
-        CATALOGUE.iter().flat_map(scopes).collect()
+        effects.iter().flat_map(scopes).collect()
+    }
+
+    /// Every effect at every scope it can have.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        Self::of(&CATALOGUE.iter().collect::<Vec<_>>())
+    }
+
+    /// Logarithm of what one believes of it beside other effects and scopes (assumed): effects are
+    /// alike; one that can have a scope is on all wheels two times in five, and on some axle, some
+    /// side or some single wheel one time in five each.
+    #[must_use]
+    pub fn log_prior(&self) -> f64 {
+        let share: f64 = match self.scope {
+            _ if !self.effect.has_scope() => 1.0,
+            Scope::All => 0.4,
+            Scope::Axle(_) => 0.2 / 3.0,
+            Scope::Side(_) => 0.2 / 2.0,
+            Scope::Wheel(_) => 0.2 / 6.0,
+        };
+        share.ln()
     }
 
     /// `base` with this effect's parameters at `values`.
@@ -49,106 +73,72 @@ impl Hypothesis {
         effects
     }
 
-    /// Best values by parabolas along each parameter, from the best of several starts.
+    /// Its best values, sought from `values`, the effect there from `from_s` s of every run on.
     #[must_use]
-    pub fn fit(&self, evidence: &Evidence<'_>, base: f64) -> Fit {
+    pub fn refit(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> Fit {
+        let cost = |values: &[f64]| self.cost(evidence, from_s, values);
+        let best = descend(&cost, values.to_vec(), self.effect.parameters);
+        self.weighed(evidence, from_s, best.at, best.cost)
+    }
+
+    /// How much better `evidence` is explained with `values`: half the cost that goes.
+    #[must_use]
+    pub fn gain(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+        let effects = self.applied(&evidence.base, values);
         let only = |generator: Generator| generator.hears(self.effect, self.scope);
-        let cost = |values: &[f64]| {
-            let clamped = self.clamped(values);
-            let effects = self.applied(&evidence.base, &clamped);
-            let of = |(p, v): (&Parameter, &f64)| ((v - p.neutral) / wide(p)).powi(2);
-            let prior: f64 = self.effect.parameters.iter().zip(values).map(of).sum();
-            evidence.cost(&effects, &only) + prior
-        };
-        let starts = self.starts().into_iter().map(|start| (cost(&start), start));
-        let (_, start) = starts.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there are starts");
-        let (total, values) = descend(&cost, start, self);
-        let values = self.clamped(&values);
-        let log_evidence = 0.5 * (base - total) - self.occam(&cost, &values, total);
-        Fit { hypothesis: *self, values, cost: total, log_evidence }
+        let belief = Belief { effects: &effects, from_s };
+        0.5 * (evidence.base_cost() - evidence.cost(belief, &only))
     }
 
-    fn clamped(&self, values: &[f64]) -> Vec<f64> {
-        let clamp = |(p, v): (&Parameter, &f64)| v.clamp(p.range[0], p.range[1]);
-        self.effect.parameters.iter().zip(values).map(clamp).collect()
+    /// What is left and what one has to believe for it.
+    fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+        let only = |generator: Generator| generator.hears(self.effect, self.scope);
+        let effects = self.applied(&evidence.base, values);
+        let of = |(p, v): (&Parameter, &f64)| ((v - p.neutral) / wide(p)).powi(2);
+        let prior: f64 = self.effect.parameters.iter().zip(values).map(of).sum();
+        evidence.cost(Belief { effects: &effects, from_s }, &only) + prior
     }
 
-    /// Starts on both sides of neutral, near and far.
-    fn starts(&self) -> Vec<Vec<f64>> {
-        let p = self.effect.parameters;
-        let mut starts = Vec::new();
-        for reach in [-8.0, -2.0, 2.0, 8.0] {
-            for k in 0..p.len() {
-                let mut start: Vec<f64> = p.iter().map(|p| p.neutral).collect();
-                start[k] =
-                    (p[k].neutral + reach * p[k].tolerance).clamp(p[k].range[0], p[k].range[1]);
-                if start[k] != p[k].neutral && !starts.contains(&start) {
-                    starts.push(start);
-                }
-            }
+    fn weighed(&self, evidence: &Evidence<'_>, from_s: f64, values: Vec<f64>, cost: f64) -> Fit {
+        let of = |moved: &[f64]| self.cost(evidence, from_s, moved);
+        let parameters = self.effect.parameters.iter().enumerate();
+        let sigma: Vec<f64> =
+            parameters.map(|(k, p)| sigma(&of, &values, cost, k, p).min(wide(p))).collect();
+        let occam: f64 =
+            self.effect.parameters.iter().zip(&sigma).map(|(p, s)| (wide(p) / s).ln()).sum();
+        let log_evidence = 0.5 * (evidence.base_cost() - cost) - occam + self.log_prior();
+        Fit { hypothesis: *self, values, sigma, from_s, log_evidence }
+    }
+}
+
+/// Standard deviation of parameter `k` about `at`, the others held: where the cost is up by one.
+///
+/// The step is sought so that the cost rises by about one; at the end of a range, inwards alone.
+fn sigma(cost: &dyn Fn(&[f64]) -> f64, at: &[f64], least: f64, k: usize, p: &Parameter) -> f64 {
+    let rise = |by: f64| {
+        let mut moved = at.to_vec();
+        moved[k] = (at[k] + by).clamp(p.range[0], p.range[1]);
+        let step = (moved[k] - at[k]).abs();
+        (step > 0.5 * by.abs()).then(|| (cost(&moved) - least, step))
+    };
+    let (mut step, mut found) = (0.1 * p.tolerance, wide(p));
+    for _ in 0..8 {
+        let sides: Vec<(f64, f64)> = [step, -step].into_iter().filter_map(rise).collect();
+        let up = sides.iter().map(|(rise, _)| rise).sum::<f64>() / sides.len().max(1) as f64;
+        let Some((_, taken)) = sides.first() else { break };
+        if up > 0.0 {
+            found = taken / up.sqrt();
         }
-        starts
+        if (0.3..3.0).contains(&up) {
+            break;
+        }
+        step =
+            if up <= 0.0 { 3.0 * step } else { (step / up.sqrt()).clamp(0.1 * step, 10.0 * step) };
     }
-
-    /// What the freedom of the parameters costs: prior width over posterior width.
-    fn occam(&self, cost: &dyn Fn(&[f64]) -> f64, at: &[f64], total: f64) -> f64 {
-        let width = |(k, p): (usize, &Parameter)| {
-            let step = 0.1 * p.tolerance;
-            let side = |sign: f64| {
-                let mut moved = at.to_vec();
-                moved[k] += sign * step;
-                cost(&moved)
-            };
-            let curvature = ((side(1.0) + side(-1.0) - 2.0 * total) / (step * step)).max(0.0);
-            let precision = (0.5 * curvature).max(wide(p).powi(-2));
-            (wide(p) * precision.sqrt()).ln()
-        };
-        self.effect.parameters.iter().enumerate().map(width).sum()
-    }
+    found
 }
 
 /// Width of the prior of a parameter whose effect is supposed: ten tolerances.
 fn wide(p: &Parameter) -> f64 {
     10.0 * p.tolerance
-}
-
-/// Parabolas along each parameter in turn, until nothing is gained.
-fn descend(
-    cost: &dyn Fn(&[f64]) -> f64,
-    start: Vec<f64>,
-    hypothesis: &Hypothesis,
-) -> (f64, Vec<f64>) {
-    let mut steps: Vec<f64> = hypothesis.effect.parameters.iter().map(|p| p.tolerance).collect();
-    let mut least = cost(&start);
-    let mut at = start;
-    for _ in 0..10 {
-        let before = least;
-        for k in 0..at.len() {
-            let probe = |by: f64| {
-                let mut moved = at.clone();
-                moved[k] += by;
-                let moved = hypothesis.clamped(&moved);
-                (cost(&moved), moved)
-            };
-            let (up, down) = (probe(steps[k]), probe(-steps[k]));
-            let curvature = up.0 + down.0 - 2.0 * least;
-            let vertex = if curvature > 0.0 {
-                (0.5 * (down.0 - up.0) / curvature).clamp(-4.0, 4.0) * steps[k]
-            } else if up.0 < down.0 {
-                4.0 * steps[k]
-            } else {
-                -4.0 * steps[k]
-            };
-            for (total, moved) in [probe(vertex), up, down] {
-                if total < least {
-                    (least, at) = (total, moved);
-                }
-            }
-            steps[k] = (0.5 * vertex.abs()).clamp(0.1 * steps[k], 2.0 * steps[k]);
-        }
-        if before - least < 0.05 {
-            break;
-        }
-    }
-    (least, at)
 }

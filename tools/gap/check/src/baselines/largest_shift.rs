@@ -19,7 +19,7 @@ pub(super) fn reply(inquiry: &Inquiry) -> Reply {
         Knob::Machine(_) => true,
     };
     let knobs: Vec<Knob> = Knob::all().into_iter().filter(known).collect();
-    let evidence = Evidence::new(&runs, &inquiry.machine, inquiry.believed.clone(), knobs);
+    let evidence = Evidence::new(&runs, &inquiry.machine, inquiry.believed.clone(), &knobs);
     let mut shifts: BTreeMap<&str, (&'static Effect, PerWheel<f64>)> = BTreeMap::new();
     for (knob, shift) in evidence.shifts() {
         if let Knob::Effect(effect, _, scope) = knob {

@@ -1,0 +1,115 @@
+//! Hypotheses ranked on two sets of runs: fitted on one, held against the other.
+
+use rayon::prelude::*;
+use xt28_machine::Machine;
+use xt28_sim::Effects;
+use xt28_sim::effects::Effect;
+
+use super::evidence::{Evidence, Left};
+use super::hypothesis::Fit;
+use super::knob::Knob;
+use super::search::search;
+use super::signals::Signals;
+
+/// Instants of every run at which an effect may set in, s from, to and between.
+const SETS_IN_S: [f64; 3] = [4.0, 26.0, 2.0];
+/// How many of the leading hypotheses are asked when they set in.
+const ASKED: usize = 6;
+/// What a beginning must gain beyond the freedom to choose it, nats.
+const BEGINNING_MIN: f64 = 6.0;
+
+/// A fitted hypothesis with what it is worth on both sets of runs.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// What was fitted, and how well.
+    pub fit: Fit,
+    /// What the same values gain on the runs held out, nats; below zero they do harm.
+    pub held_gain: f64,
+}
+
+/// All runs around one state of belief.
+pub(super) struct Docket<'a> {
+    fit: Evidence<'a>,
+    held: Option<Evidence<'a>>,
+}
+
+impl Candidate {
+    /// Evidence of the runs fitted and foretelling of those held out, nats over the base.
+    #[must_use]
+    pub fn score(&self) -> f64 {
+        self.fit.log_evidence + self.held_gain
+    }
+}
+
+impl<'a> Docket<'a> {
+    /// The runs in `fit` and `held` around `base`.
+    pub(super) fn new(
+        fit: &'a [Signals],
+        held: &'a [Signals],
+        machine: &Machine,
+        base: &Effects,
+    ) -> Self {
+        let knobs = Knob::all();
+        let evidence = |runs| Evidence::new(runs, machine, base.clone(), &knobs);
+        Self { fit: evidence(fit), held: (!held.is_empty()).then(|| evidence(held)) }
+    }
+
+    /// The hypotheses that explain something, best first.
+    pub(super) fn candidates(&self, catalogue: &[&'static Effect]) -> Vec<Candidate> {
+        let fits = search(&self.fit, catalogue, 0.0);
+        let mut all: Vec<Candidate> = fits.into_par_iter().map(|fit| self.weighed(fit)).collect();
+        rank(&mut all);
+        let asked = all.len().min(ASKED);
+        let late: Vec<Candidate> =
+            all[..asked].par_iter().filter_map(|candidate| self.set_in(candidate)).collect();
+        for candidate in late {
+            let same = |other: &Candidate| other.fit.hypothesis == candidate.fit.hypothesis;
+            if let Some(place) = all.iter().position(same) {
+                all[place] = candidate;
+            }
+        }
+        rank(&mut all);
+        all
+    }
+
+    /// What is left on each signal of all runs once `fits` are believed.
+    pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
+        let mut effects = self.fit.base.clone();
+        for fit in fits {
+            effects = fit.hypothesis.applied(&effects, &fit.values);
+        }
+        let from_s = fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max);
+        self.fit.left(super::evidence::Belief { effects: &effects, from_s })
+    }
+
+    fn weighed(&self, fit: Fit) -> Candidate {
+        let gain = |held| fit.hypothesis.gain(held, fit.from_s, &fit.values);
+        let held_gain = self.held.as_ref().map_or(0.0, gain);
+        Candidate { fit, held_gain }
+    }
+
+    /// The same candidate setting in late, where that is worth it.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    fn set_in(&self, early: &Candidate) -> Option<Candidate> {
+        let [from, to, by] = SETS_IN_S;
+        let count = ((to - from) / by) as usize + 1;
+        let hypothesis = early.fit.hypothesis;
+        let gain = |at_s: f64, values: &[f64]| hypothesis.gain(&self.fit, at_s, values);
+        let instants = (0..count).map(|i| from + by * i as f64);
+        let best = |instants: &mut dyn Iterator<Item = f64>, values: &[f64]| {
+            instants.map(|at_s| (gain(at_s, values), at_s)).max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let (_, at_s) = best(&mut instants.into_iter(), &early.fit.values)?;
+        let late = hypothesis.refit(&self.fit, at_s, &early.fit.values);
+        let near = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|shift| at_s + shift);
+        let (_, at_s) = best(&mut near.into_iter(), &late.values)?;
+        let mut late = hypothesis.refit(&self.fit, at_s, &late.values);
+        late.log_evidence -= (count as f64).ln();
+        let late = self.weighed(late);
+        (late.score() > early.score() + BEGINNING_MIN).then_some(late)
+    }
+}
+
+fn rank(all: &mut [Candidate]) {
+    all.sort_by(|a, b| b.score().total_cmp(&a.score()));
+}

@@ -1,0 +1,112 @@
+//! The least cost near a start: parabolas along each parameter, and along where the last round went.
+
+use xt28_sim::effects::Parameter;
+
+/// Rounds after which a search that still gains is given up.
+const ROUNDS: usize = 30;
+/// A round that gains less than this is the last; half of it is in nats.
+const GAIN_MIN: f64 = 0.02;
+/// Furthest that a parabola is believed, in steps.
+const REACH: f64 = 4.0;
+
+/// Where a search ended.
+#[derive(Clone, Debug)]
+pub(super) struct End {
+    /// What it costs there.
+    pub(super) cost: f64,
+    /// One value a parameter.
+    pub(super) at: Vec<f64>,
+}
+
+/// Goes down `cost` from `start`, inside the parameters' ranges.
+pub(super) fn descend(
+    cost: &dyn Fn(&[f64]) -> f64,
+    start: Vec<f64>,
+    parameters: &[Parameter],
+) -> End {
+    let mut steps: Vec<f64> = parameters
+        .iter()
+        .zip(&start)
+        .map(|(p, v)| p.tolerance.max(0.2 * (v - p.neutral).abs()))
+        .collect();
+    let mut end = End { cost: cost(&start), at: start };
+    for _ in 0..ROUNDS {
+        let before = end.clone();
+        for (k, step) in steps.iter_mut().enumerate() {
+            let mut direction = vec![0.0; parameters.len()];
+            direction[k] = *step;
+            let moved = line(cost, &mut end, &direction, parameters);
+            *step *= moved.abs().clamp(0.2, 3.0);
+        }
+        if steps.len() > 1 {
+            let along: Vec<f64> = end.at.iter().zip(&before.at).map(|(a, b)| a - b).collect();
+            if along.iter().any(|by| *by != 0.0) {
+                line(cost, &mut end, &along, parameters);
+            }
+        }
+        let settled = steps.iter().zip(parameters).all(|(s, p)| *s < 0.02 * p.tolerance);
+        if before.cost - end.cost < GAIN_MIN && (settled || before.at == end.at) {
+            break;
+        }
+    }
+    end
+}
+
+/// One parabola along `direction`; how many of it the end moved.
+fn line(
+    cost: &dyn Fn(&[f64]) -> f64,
+    end: &mut End,
+    direction: &[f64],
+    parameters: &[Parameter],
+) -> f64 {
+    let from = end.clone();
+    let probe = |by: f64| {
+        let along = from.at.iter().zip(direction).zip(parameters);
+        let at: Vec<f64> =
+            along.map(|((v, d), p)| (v + by * d).clamp(p.range[0], p.range[1])).collect();
+        let cost = if at == from.at { from.cost } else { cost(&at) };
+        (by, End { cost, at })
+    };
+    let (up, down) = (probe(1.0), probe(-1.0));
+    let curvature = up.1.cost + down.1.cost - 2.0 * from.cost;
+    let vertex = if curvature > 0.0 {
+        (0.5 * (down.1.cost - up.1.cost) / curvature).clamp(-REACH, REACH)
+    } else if up.1.cost < down.1.cost {
+        REACH
+    } else {
+        -REACH
+    };
+    let mut moved = 0.0;
+    for (by, probed) in [probe(vertex), up, down] {
+        if probed.cost < end.cost {
+            (moved, *end) = (by, probed);
+        }
+    }
+    moved
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::find;
+
+    use super::*;
+
+    /// Two parameters that pull on each other, in a narrow valley.
+    #[test]
+    fn it_goes_down_a_narrow_valley_to_a_twentieth_of_a_nat() {
+        let p = find("speed-asymmetry").unwrap().parameters;
+        let cost = |v: &[f64]| {
+            let (a, b) = (v[0] - 0.7, v[1] - 1.3);
+            1000.0 * (a - 0.9 * b).powi(2) + 10.0 * (a + b).powi(2)
+        };
+        let end = descend(&cost, vec![1.0, 1.0], p);
+        assert!(end.cost < 0.1, "{end:?}");
+    }
+
+    #[test]
+    fn it_stays_inside_the_range() {
+        let p = find("arm-delay").unwrap().parameters;
+        let end = descend(&|v| (v[0] + 1.0).powi(2), vec![0.2], p);
+        assert_eq!(end.at[0], p[0].range[0]);
+    }
+}

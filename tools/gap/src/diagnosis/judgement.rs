@@ -1,0 +1,189 @@
+//! From what the logs say to a verdict: is there something, is it known, what is it, how sure.
+//!
+//! The probabilities are not raw evidence, which is over-confident wherever the simulator is not quite
+//! the machine. Three questions are asked in turn, each with a scale that was set on foreign machines of
+//! our own making (`docs/diagnosis.md`): is there anything beyond tolerances; is it in the catalogue;
+//! which of the catalogue is it.
+
+use std::collections::BTreeMap;
+
+use xt28_sim::effects::Scope;
+
+use super::candidates::Candidate;
+use super::evidence::Left;
+use super::excitation::not_testable;
+use super::inquiry::Inquiry;
+use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Place, Verdict};
+
+/// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
+const SOMETHING: [f64; 2] = [20.0, 3.0];
+/// What may be left over, in floors, where something and unknown are as likely, and how sharply.
+const UNKNOWN: [f64; 2] = [2.5, 4.0];
+/// Share of a gap that a right cause may leave: laws of machines differ in their details.
+const LAW_SHARE: f64 = 0.15;
+/// Share of the best evidence, nats, by which evidence is taken to be uncertain.
+const TEMPERATURE_SHARE: f64 = 0.03;
+/// Effects this much less likely than the best, as a factor, are in its class.
+const CLASS: f64 = 0.2;
+/// Causes that are listed.
+const LISTED: usize = 10;
+/// Signals with fewer independent samples say nothing of what is left.
+const SAMPLES_MIN: f64 = 8.0;
+/// 5 % lie beyond this many standard deviations on either side.
+const NINETY: f64 = 1.645;
+
+/// What the logs say of every hypothesis.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// What each signal leaves while nothing is believed to be wrong.
+    pub before: Vec<Left>,
+    /// Single causes, best first.
+    pub single: Vec<Candidate>,
+    /// Pairs of causes, best first; empty where one is enough.
+    pub pair: Vec<[Candidate; 2]>,
+    /// What each signal leaves under the best cause or pair.
+    pub after: Vec<Left>,
+}
+
+impl Findings {
+    /// How far the worst signal lies above what a right answer leaves; about one where all is explained.
+    #[must_use]
+    pub fn left_over(&self) -> f64 {
+        let after = if self.single.is_empty() { &self.before } else { &self.after };
+        let ratio = |(before, after): (&Left, &Left)| {
+            let allowed = 1.0 + LAW_SHARE * before.square.sqrt();
+            if after.samples < SAMPLES_MIN { 0.0 } else { after.square.sqrt() / allowed }
+        };
+        self.before.iter().zip(after).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Evidence of the best cause, nats.
+    #[must_use]
+    pub fn evidence(&self) -> f64 {
+        self.single.first().map_or(0.0, |best| best.score().max(0.0))
+    }
+}
+
+/// The verdict on `findings`.
+pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
+    let something = logistic((findings.evidence().max(1e-3) / SOMETHING[0]).ln() * SOMETHING[1]);
+    let left_over = (findings.left_over() / UNKNOWN[0]).ln() * UNKNOWN[1];
+    let unknown = logistic(left_over);
+    let any = 1.0 - (1.0 - something) * (1.0 - unknown);
+    let known = something * (1.0 - unknown);
+    let causes = causes(findings, known);
+    let runs: Vec<_> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
+    let verdict = if any < 0.5 {
+        Verdict::None
+    } else if unknown > 0.5 {
+        Verdict::Unknown
+    } else {
+        Verdict::Effect
+    };
+    Diagnosis {
+        verdict,
+        places: places(&findings.before),
+        causes,
+        probability_none: 1.0 - any,
+        probability_unknown: any - known,
+        together: None,
+        next: None,
+        not_testable: not_testable(&runs, &inquiry.catalogue),
+        notes: notes(inquiry),
+        seconds: 0.0,
+    }
+}
+
+/// Causes with their probabilities; `known` is shared among those of one rank.
+fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
+    let ranks: Vec<Vec<&Candidate>> = match findings.pair.first() {
+        None => vec![findings.single.iter().collect()],
+        Some([first, _]) => {
+            let name = first.fit.hypothesis.effect;
+            let own = findings.single.iter().filter(|c| c.fit.hypothesis.effect == name);
+            let firsts = std::iter::once(first).chain(own.skip(1)).collect();
+            vec![firsts, findings.pair.iter().map(|[_, second]| second).collect()]
+        }
+    };
+    let mut causes: Vec<Cause> = ranks.iter().flat_map(|rank| shares(rank, known)).collect();
+    causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    causes.truncate(LISTED);
+    causes
+}
+
+/// One cause for each effect, at its best scope, with the probability of all its scopes.
+fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
+    let best = rank.first().map_or(0.0, |best| best.score());
+    let temperature = 1.0 + TEMPERATURE_SHARE * best.max(0.0);
+    let mut of: BTreeMap<&str, (f64, &Candidate)> = BTreeMap::new();
+    for candidate in rank {
+        let weight = ((candidate.score() - best) / temperature).exp();
+        let name = candidate.fit.hypothesis.effect.name;
+        of.entry(name).and_modify(|(sum, _)| *sum += weight).or_insert((weight, candidate));
+    }
+    let total: f64 = of.values().map(|(weight, _)| weight).sum();
+    let class = |weight: f64, name: &'static str| {
+        let near =
+            of.values().filter(|(other, _)| *other > CLASS * weight && weight > CLASS * other);
+        let others = near.map(|(_, c)| c.fit.hypothesis.effect.name).filter(|other| *other != name);
+        std::iter::once(name).chain(others).collect()
+    };
+    let cause = |&(weight, candidate): &(f64, &Candidate)| {
+        let fit = &candidate.fit;
+        Cause {
+            effect: fit.hypothesis.effect,
+            scope: fit.hypothesis.scope,
+            probability: known * weight / total,
+            parameters: estimates(candidate),
+            class: class(weight, fit.hypothesis.effect.name),
+            begins: (fit.from_s > 0.0)
+                .then(|| Beginning { run: "every run".to_owned(), at_s: fit.from_s }),
+            shrink: None,
+        }
+    };
+    of.values().map(cause).collect()
+}
+
+fn estimates(candidate: &Candidate) -> Vec<Estimate> {
+    let fit = &candidate.fit;
+    let parameters = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
+    let estimate = |(p, (value, sigma)): (&'static xt28_sim::effects::Parameter, (&f64, &f64))| {
+        let reach = NINETY * sigma;
+        let [low, high] = p.range;
+        Estimate {
+            name: p.name,
+            value: [*value, (value - reach).max(low), (value + reach).min(high)],
+        }
+    };
+    parameters.map(estimate).collect()
+}
+
+/// Blocks by their gap, largest first; wheels of a block that part alike are one scope.
+fn places(before: &[Left]) -> Vec<Place> {
+    let total: f64 = before.iter().map(|left| (left.square - 1.0).max(0.0)).sum();
+    let mut places: Vec<Place> = before
+        .iter()
+        .map(|left| Place {
+            block: left.generator.block(),
+            scope: left.generator.wheel().map_or(Scope::All, Scope::Wheel),
+            residual: left.signal.to_string(),
+            gap_over_noise: left.square.sqrt(),
+            share: if total > 0.0 { (left.square - 1.0).max(0.0) / total } else { 0.0 },
+        })
+        .collect();
+    places.sort_by(|a, b| b.gap_over_noise.total_cmp(&a.gap_over_noise));
+    places
+}
+
+fn notes(inquiry: &Inquiry) -> Vec<String> {
+    let held: Vec<_> = inquiry.runs.iter().filter(|run| !run.fit).collect();
+    let mut notes = Vec::new();
+    if held.is_empty() {
+        notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
+    }
+    notes
+}
+
+fn logistic(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}

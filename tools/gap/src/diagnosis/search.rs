@@ -1,0 +1,131 @@
+//! The hypotheses worth a fit: all are looked at on a coarse grid, the promising ones followed.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use xt28_sim::effects::{Effect, Parameter};
+
+use super::evidence::{Belief, Evidence, Sums};
+use super::generator::Generator;
+use super::hypothesis::{Fit, Hypothesis};
+
+/// Grid of the first look, in tolerances from neutral.
+const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
+/// How many hypotheses are followed to their best values.
+const FOLLOWED: usize = 36;
+/// How many starts of one hypothesis, if they are the leading ones.
+const STARTS: usize = 2;
+/// Hypotheses that count as leading.
+const LEADING: usize = 6;
+/// A start must gain this much, nats.
+const GAIN_MIN: f64 = 0.5;
+
+/// Sums of generators that look at one wheel alone, by wheel and values.
+pub(super) type Memory = BTreeMap<(Generator, Vec<u64>), Sums>;
+
+/// A hypothesis with the best values of the first look.
+#[derive(Clone, Debug)]
+struct Start {
+    hypothesis: Hypothesis,
+    values: Vec<f64>,
+    gain: f64,
+}
+
+/// Fits of the hypotheses that may explain something, the likeliest first.
+///
+/// `from_s` is the instant of every run at which the effect sets in.
+#[must_use]
+pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect], from_s: f64) -> Vec<Fit> {
+    let mut starts: Vec<Start> = effects
+        .par_iter()
+        .flat_map_iter(|effect| first_look(evidence, effect, from_s))
+        .filter(|start| start.gain > GAIN_MIN)
+        .collect();
+    starts.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    let mut followed: Vec<&Start> = Vec::new();
+    let mut hypotheses: Vec<Hypothesis> = Vec::new();
+    for start in &starts {
+        let known = hypotheses.iter().position(|known| *known == start.hypothesis);
+        let again = followed.iter().filter(|other| other.hypothesis == start.hypothesis).count();
+        match known {
+            Some(rank) if rank < LEADING && again < STARTS => followed.push(start),
+            None if hypotheses.len() < FOLLOWED => {
+                hypotheses.push(start.hypothesis);
+                followed.push(start);
+            }
+            _ => {}
+        }
+    }
+    let mut fits: Vec<Fit> = followed
+        .into_par_iter()
+        .map(|start| start.hypothesis.refit(evidence, from_s, &start.values))
+        .collect();
+    fits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    let mut best: Vec<Fit> = Vec::new();
+    for fit in fits {
+        if best.iter().all(|known| known.hypothesis != fit.hypothesis) {
+            best.push(fit);
+        }
+    }
+    best
+}
+
+fn weight(start: &Start) -> f64 {
+    start.gain + start.hypothesis.log_prior()
+}
+
+/// All scopes of one effect on the grid. What a single arm does with some values is the same at every
+/// scope that has the arm, and is remembered.
+fn first_look(evidence: &Evidence<'_>, effect: &'static Effect, from_s: f64) -> Vec<Start> {
+    let mut memory = Memory::new();
+    let mut starts = Vec::new();
+    for hypothesis in Hypothesis::of(&[effect]) {
+        for values in grid(effect.parameters) {
+            let effects = hypothesis.applied(&evidence.base, &values);
+            let belief = Belief { effects: &effects, from_s };
+            let only = |generator: Generator| generator.hears(effect, hypothesis.scope);
+            let cost = evidence.cost_remembered(belief, &only, &values, &mut memory);
+            let gain = 0.5 * (evidence.base_cost() - cost);
+            starts.push(Start { hypothesis, values, gain });
+        }
+    }
+    starts
+}
+
+/// One parameter at a time on both sides of neutral, near and far.
+fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
+    let mut grid: Vec<Vec<f64>> = Vec::new();
+    for (k, p) in parameters.iter().enumerate() {
+        for reach in REACHES {
+            let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+            values[k] = (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
+            if values[k] != p.neutral && !grid.contains(&values) {
+                grid.push(values);
+            }
+        }
+    }
+    grid
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::{Scope, find};
+
+    use super::*;
+
+    #[test]
+    fn the_grid_stays_in_range_and_names_nothing_twice() {
+        for name in ["arm-delay", "speed-asymmetry", "payload", "pump-flow-limit"] {
+            let p = find(name).unwrap().parameters;
+            let grid = grid(p);
+            assert!(grid.len() >= 2, "{name}");
+            for (i, values) in grid.iter().enumerate() {
+                assert!(!grid[..i].contains(values));
+                for (value, p) in values.iter().zip(p) {
+                    assert!((p.range[0]..=p.range[1]).contains(value), "{name}");
+                }
+            }
+        }
+        assert_eq!(Scope::ALL.len(), Hypothesis::of(&[find("arm-delay").unwrap()]).len());
+    }
+}

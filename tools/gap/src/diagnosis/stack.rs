@@ -1,0 +1,104 @@
+//! Residuals of one generator over all runs, in groups that share one unknown scale.
+
+use xt28_machine::Machine;
+use xt28_sim::Effects;
+
+use super::generator::{Generator, Signal};
+use super::signals::Signals;
+
+/// Time between two samples of a residual, s.
+const STEP_S: f64 = 0.1;
+
+/// One signal of a generator, over all runs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Group {
+    /// Which signal.
+    pub(super) signal: Signal,
+    /// Independent samples: correlated ones count once.
+    pub(super) samples: f64,
+}
+
+/// The samples of one generator that can be judged, each times the root of its weight.
+#[derive(Clone, Debug)]
+pub(super) struct Stack {
+    /// Who made them.
+    pub(super) generator: Generator,
+    /// The values, run after run.
+    pub(super) values: Vec<f64>,
+    /// Group of each value.
+    pub(super) group: Vec<usize>,
+    /// Instant of each value in its run, s.
+    pub(super) at_s: Vec<f64>,
+    /// All groups.
+    pub(super) groups: Vec<Group>,
+    mask: Vec<bool>,
+}
+
+impl Stack {
+    /// Residuals of `generator` on `runs`.
+    #[allow(clippy::cast_precision_loss)]
+    pub(super) fn new(
+        generator: Generator,
+        runs: &[Signals],
+        machine: &Machine,
+        effects: &Effects,
+    ) -> Self {
+        let mut stack = Self {
+            generator,
+            values: Vec::new(),
+            group: Vec::new(),
+            at_s: Vec::new(),
+            groups: Vec::new(),
+            mask: Vec::new(),
+        };
+        for run in runs {
+            for residual in generator.residuals(run, machine, effects) {
+                let group = stack.group_of(residual.signal);
+                let weight = residual.signal.weight();
+                for (i, value) in residual.values.iter().enumerate() {
+                    stack.mask.push(value.is_finite());
+                    if value.is_finite() {
+                        stack.values.push(value * weight.sqrt());
+                        stack.group.push(group);
+                        stack.at_s.push(i as f64 * STEP_S);
+                        stack.groups[group].samples += weight;
+                    }
+                }
+            }
+        }
+        stack
+    }
+
+    /// The same samples under another belief; what can no longer be said counts as no error.
+    pub(super) fn again(&self, runs: &[Signals], machine: &Machine, effects: &Effects) -> Vec<f64> {
+        let mut values = Vec::with_capacity(self.values.len());
+        let mut mask = self.mask.iter();
+        for run in runs {
+            for residual in self.generator.residuals(run, machine, effects) {
+                let root = residual.signal.weight().sqrt();
+                for value in residual.values {
+                    if mask.next() == Some(&true) {
+                        values.push(if value.is_finite() { value * root } else { 0.0 });
+                    }
+                }
+            }
+        }
+        values
+    }
+
+    /// Sum of squares of `values` in each group.
+    pub(super) fn squares(&self, values: &[f64]) -> Vec<f64> {
+        let mut squares = vec![0.0; self.groups.len()];
+        for (value, &group) in values.iter().zip(&self.group) {
+            squares[group] += value * value;
+        }
+        squares
+    }
+
+    fn group_of(&mut self, signal: Signal) -> usize {
+        self.groups.iter().position(|group| group.signal == signal).unwrap_or_else(|| {
+            self.groups.push(Group { signal, samples: 0.0 });
+            self.groups.len() - 1
+        })
+    }
+}

@@ -1,25 +1,25 @@
 //! Where a ball meets the ground, so that its force varies continuously.
 //!
 //! The ball touches where its distance to the triangles has a local minimum. In a hollow several
-//! such minima coexist, and one comes or goes only where it sits on an edge between triangles that
-//! rise to both sides. So each counts with a weight that vanishes there, and minima near one another
-//! share one contact between them. As the ball rolls through a hollow its contact passes from
-//! triangle to triangle without a jump, while in a ditch it rests on both sides with a whole tyre each.
+//! such minima coexist, and one comes or goes only by meeting the pass that parts it from a nearer
+//! one. So each counts by how far it is from its passes: those without a pass to speak of between
+//! them share one contact, and one that is about to slide over its pass has no share left. As the
+//! ball rolls through a hollow its contact goes from triangle to triangle without a jump, while in a
+//! ditch it rests on both sides with a whole tyre each. Minima and passes move without a jump, and
+//! so does the force made of them.
 
 use glam::DVec3;
 
 use crate::Terrain;
-use crate::terrain::{Grid, Nearest, SPACING_M};
+use crate::terrain::{Grid, Nearest};
 
 /// Most minima of one ball.
-pub(super) const TOUCHES_MAX: usize = 8;
-/// Minima nearer to one another than this are partly one, m.
-const SHARING_M: f64 = 0.15;
-/// A minimum this much further off than the nearest takes no share of another's contact, m: it may
-/// leave the search's reach without a jump.
-pub(super) const BAND_M: f64 = 0.005;
-/// Least ease, so that a lone foot on the bottom of a ditch carries the ball.
-const EASE_MIN: f64 = 1.0e-9;
+pub(super) const TOUCHES_MAX: usize = 12;
+/// How far along the ground from its pass a minimum is a whole contact of its own, m (assumed: three
+/// quarters of the grid's spacing).
+const SETTLED_M: f64 = 0.075;
+/// Keeps a share defined where two minima and their pass are one point.
+const LEAST: f64 = 1.0e-9;
 
 /// A local minimum of the distance.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,19 +41,36 @@ pub(super) struct Touches {
 }
 
 impl Touches {
-    /// Where a ball at `centre` is nearer to the ground than `reach_m`. To be continuous, `reach_m`
-    /// is more by [`BAND_M`] than where contacts begin to make force.
+    /// Where a ball at `centre` is no further from the ground than `reach_m`.
     pub(super) fn find(terrain: &Terrain, centre: DVec3, reach_m: f64) -> Self {
         let mut found = Self::default();
-        terrain.each_minimum(centre.to_array(), reach_m, |nearest| found.insert(centre, &nearest));
-        if let (Terrain::Grid(grid), 2..) = (terrain, found.count) {
-            found.share(grid);
+        let Terrain::Grid(grid) = terrain else {
+            terrain.each_minimum(centre.to_array(), reach_m, |at| found.insert(centre, &at));
+            return found;
+        };
+        // Those a little beyond may have a share of those within.
+        let sharing_m = reach_m.hypot(SETTLED_M);
+        terrain.each_minimum(centre.to_array(), sharing_m, |at| found.insert(centre, &at));
+        if found.count > 1 {
+            found.share(grid, centre);
         }
+        found.drop_beyond(reach_m);
         found
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Touch> {
         self.all[..self.count].iter()
+    }
+
+    fn drop_beyond(&mut self, reach_m: f64) {
+        let mut kept = 0;
+        for i in 0..self.count {
+            if self.all[i].distance_m <= reach_m {
+                self.all[kept] = self.all[i];
+                kept += 1;
+            }
+        }
+        self.count = kept;
     }
 
     /// Keeps the nearest.
@@ -73,112 +90,68 @@ impl Touches {
         }
     }
 
-    /// Shares contacts among minima that are near one another.
-    fn share(&mut self, grid: &Grid) {
-        let all = self.all;
-        let all = &all[..self.count];
-        let nearest_m = all.iter().map(|t| t.distance_m).fold(f64::MAX, f64::min);
-        let mut ease = [0.0; TOUCHES_MAX];
-        for (ease, touch) in ease.iter_mut().zip(all) {
-            *ease = ease_at(grid, touch.point) + EASE_MIN;
+    /// Shares contacts among minima that no pass parts.
+    fn share(&mut self, grid: &Grid, centre: DVec3) {
+        let count = self.count;
+        let mut settled = [[1.0; TOUCHES_MAX]; TOUCHES_MAX];
+        for i in 0..count {
+            self.settle(grid, centre, i, &mut settled);
         }
-        for (i, touch) in self.all[..all.len()].iter_mut().enumerate() {
-            let mut sum = ease[i];
-            for (j, other) in all.iter().enumerate().filter(|(j, _)| *j != i) {
-                let apart = (other.point - touch.point).length_squared();
-                let beside = (1.0 - apart / (SHARING_M * SHARING_M)).max(0.0);
-                let further = (other.distance_m - touch.distance_m) / BAND_M;
-                let claim = (1.0 - further).clamp(0.0, 1.0) * beside;
-                sum += ease[j] * claim * claim;
+        // Of two, the one that is about to slide over the pass has nothing left.
+        let part = |i: usize, j: usize| {
+            let (own, other) = (settled[i][j], settled[j][i]);
+            (own + LEAST) / (own + other * (1.0 - own) + 2.0 * LEAST)
+        };
+        let stays: [f64; TOUCHES_MAX] = core::array::from_fn(|i| {
+            let others = (0..count).filter(|&j| j != i);
+            others.fold(1.0, |least: f64, j| least.min(part(i, j)))
+        });
+        for i in 0..count {
+            let others = (0..count).filter(|&j| j != i);
+            let shared: f64 = others.map(|j| stays[j] * (1.0 - settled[i][j])).sum();
+            self.all[i].weight = stays[i] / (stays[i] + shared);
+        }
+    }
+
+    /// How well minimum `i` and each that is nearer than it are settled on their sides of their pass.
+    fn settle(
+        &self,
+        grid: &Grid,
+        centre: DVec3,
+        i: usize,
+        settled: &mut [[f64; TOUCHES_MAX]; TOUCHES_MAX],
+    ) {
+        let square = |touch: &Touch| touch.distance_m * touch.distance_m;
+        let own = self.all[i];
+        let limit_m2 = square(&own) + SETTLED_M * SETTLED_M;
+        let mut others = [0; TOUCHES_MAX];
+        let mut to = [own.nearest(); TOUCHES_MAX];
+        let mut count = 0;
+        for (j, other) in self.all[..self.count].iter().enumerate() {
+            if (other.distance_m, j) < (own.distance_m, i) {
+                (others[count], to[count]) = (j, other.nearest());
+                count += 1;
             }
-            // The nearest cannot vanish, for a minimum vanishes by sliding to a nearer one.
-            let second = ((touch.distance_m - nearest_m) / BAND_M).min(1.0);
-            touch.weight = ease[i] / sum * (1.0 - second * (1.0 - ease[i]).max(0.0));
+        }
+        if count == 0 {
+            return;
+        }
+        let mut pass_m2 = [0.0; TOUCHES_MAX];
+        grid.passes_m2(centre.to_array(), &own.nearest(), &to[..count], limit_m2, &mut pass_m2);
+        for (&j, &pass_m2) in others[..count].iter().zip(&pass_m2) {
+            // By the square of the way to the pass, which leaves and comes without a kink.
+            let side = |touch: &Touch| {
+                ((pass_m2 - square(touch)) / (SETTLED_M * SETTLED_M)).clamp(0.0, 1.0)
+            };
+            settled[i][j] = side(&own);
+            settled[j][i] = side(&self.all[j]);
         }
     }
 }
 
-/// How far a point of the ground is from where a minimum can vanish: 0 on edges that rise to both
-/// sides and on the corners where these end, 1 well inside a triangle, on another edge or on a peak;
-/// continuous.
-fn ease_at(grid: &Grid, point: DVec3) -> f64 {
-    let lattice = Lattice { grid };
-    let ([c, r], [s, t]) = lattice.cell(point);
-    // Shares of the corners of the point's triangle, and its edges across from them.
-    let (share, corners, across) = if s >= t {
-        (
-            [1.0 - s, s - t, t],
-            [[c, r], [c + 1, r], [c + 1, r + 1]],
-            [Edge::Along(c + 1, r), Edge::Diagonal(c, r), Edge::Across(c, r)],
-        )
-    } else {
-        (
-            [1.0 - t, t - s, s],
-            [[c, r], [c, r + 1], [c + 1, r + 1]],
-            [Edge::Across(c, r + 1), Edge::Diagonal(c, r), Edge::Along(c, r)],
-        )
-    };
-    let mut ease = 1.0_f64;
-    for i in 0..3 {
-        if lattice.rises(across[i]) {
-            ease = ease.min(3.0 * share[i]);
-        }
-        if lattice.meets_rise(corners[i]) {
-            ease = ease.min(3.0 * (1.0 - share[i]));
-        }
-    }
-    ease.max(0.0)
-}
-
-/// An edge of the grid by its lower end: along y, across it along x, or on a cell's diagonal.
-#[derive(Clone, Copy)]
-enum Edge {
-    Along(i64, i64),
-    Across(i64, i64),
-    Diagonal(i64, i64),
-}
-
-/// A grid as corners and edges.
-struct Lattice<'a> {
-    grid: &'a Grid,
-}
-
-impl Lattice<'_> {
-    /// The cell of a point and where in it the point lies, 0 to 1.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)]
-    fn cell(&self, point: DVec3) -> ([i64; 2], [f64; 2]) {
-        let [x0, y0] = self.grid.origin_m();
-        let at = [(point.x - x0) / SPACING_M, (point.y - y0) / SPACING_M];
-        (at.map(|at| at.floor() as i64), at.map(|at| at - at.floor()))
-    }
-
-    /// Whether the ground rises from an edge to both sides: its four points are a parallelogram.
-    fn rises(&self, edge: Edge) -> bool {
-        let h = |c: i64, r: i64| self.height_m(c, r);
-        match edge {
-            Edge::Along(c, r) => h(c + 1, r + 1) + h(c - 1, r) > h(c, r) + h(c, r + 1),
-            Edge::Across(c, r) => h(c + 1, r + 1) + h(c, r - 1) > h(c, r) + h(c + 1, r),
-            Edge::Diagonal(c, r) => h(c + 1, r) + h(c, r + 1) > h(c, r) + h(c + 1, r + 1),
-        }
-    }
-
-    /// Whether such an edge ends in a corner.
-    fn meets_rise(&self, [c, r]: [i64; 2]) -> bool {
-        self.rises(Edge::Along(c, r))
-            || self.rises(Edge::Along(c, r - 1))
-            || self.rises(Edge::Across(c, r))
-            || self.rises(Edge::Across(c - 1, r))
-            || self.rises(Edge::Diagonal(c, r))
-            || self.rises(Edge::Diagonal(c - 1, r - 1))
-    }
-
-    /// Beyond the grid the border's: its edges do not matter there.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
-    fn height_m(&self, column: i64, row: i64) -> f64 {
-        let [columns, rows] = self.grid.size();
-        let column = column.clamp(0, columns as i64 - 1) as usize;
-        let row = row.clamp(0, rows as i64 - 1) as usize;
-        f64::from(self.grid.heights_m()[row * columns + column])
+impl Touch {
+    const fn nearest(&self) -> Nearest {
+        Nearest { point_m: self.point.to_array(), distance_m: self.distance_m }
     }
 }
 
@@ -203,7 +176,7 @@ mod tests {
 
     /// The force that the touches make on a ball with a stiffness of 1.
     fn force(terrain: &Terrain, centre: DVec3) -> DVec3 {
-        Touches::find(terrain, centre, RADIUS_M + BAND_M)
+        Touches::find(terrain, centre, RADIUS_M)
             .iter()
             .map(|t| t.normal * (t.weight * (RADIUS_M - t.distance_m).max(0.0)))
             .sum()
@@ -219,10 +192,76 @@ mod tests {
         }
     }
 
+    /// The largest change of force over a step of `step_m`, along 0.1 m, and where it begins.
+    fn largest_change(
+        at: &impl Fn(f64) -> DVec3,
+        from_m: f64,
+        step_m: f64,
+        steps: u32,
+    ) -> (f64, f64) {
+        let (mut largest, mut before) = ((0.0, from_m), at(from_m));
+        for i in 1..=steps {
+            let s_m = from_m + f64::from(i) * step_m;
+            let after = at(s_m);
+            let change = (after - before).length();
+            if change > largest.0 {
+                largest = (change, s_m - step_m);
+            }
+            before = after;
+        }
+        largest
+    }
+
+    /// Rolls a ball 0.1 m over rough ground, 1 cm deep at the start, and looks ever closer where its
+    /// force changes most: what is left of the change over 0.05 nm.
+    fn jump_m([phase, rough_m, x, y, heading]: [f64; 5]) -> f64 {
+        let terrain = rough(phase, rough_m);
+        let height = terrain.rest_m(x, y, RADIUS_M) - 0.01;
+        let at = |s: f64| {
+            force(&terrain, DVec3::new(x + s * heading.cos(), y + s * heading.sin(), height))
+        };
+        let mut step_m = 0.1 / 2_000.0;
+        let (mut change_m, mut from_m) = largest_change(&at, 0.0, step_m, 2_000);
+        for _ in 0..3 {
+            step_m /= 100.0;
+            (change_m, from_m) = largest_change(&at, from_m, step_m, 100);
+        }
+        change_m
+    }
+
+    /// Found by the search below, when a minimum could vanish into one far aside.
+    #[test]
+    fn what_once_jumped_is_continuous() {
+        for case in [
+            [
+                4.891759595907326,
+                0.019046848342354792,
+                -0.22758385051501787,
+                -0.16749443771211564,
+                3.255753182506286,
+            ],
+            [
+                0.0,
+                0.013440233849817596,
+                -0.2646118094068932,
+                -0.13898373598020908,
+                3.0205130694721367,
+            ],
+            [
+                0.9787448130728538,
+                0.014365529628193327,
+                0.7439541488837491,
+                0.2916814312665073,
+                4.3864064511307905,
+            ],
+        ] {
+            assert!(jump_m(case) < 1e-7, "{case:?}: {} m", jump_m(case));
+        }
+    }
+
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-        /// Through hollows, over crests and along edges the force has no jump to speak of: its change
-        /// over a step shrinks with the step, but for a rare remnant of some hundredths of the force.
+        #![proptest_config(ProptestConfig::default())]
+        /// Through hollows, over crests and along edges the force has no jump.
         #[test]
         fn the_force_is_continuous(
             phase in 0.0..6.3_f64,
@@ -231,19 +270,8 @@ mod tests {
             y in -0.8..0.8_f64,
             heading in 0.0..6.3_f64,
         ) {
-            let terrain = rough(phase, rough_m);
-            let lowest = terrain.rest_m(x, y, RADIUS_M) - 0.01;
-            let at = |s: f64| {
-                force(&terrain, DVec3::new(x + s * heading.cos(), y + s * heading.sin(), lowest))
-            };
-            let largest = |steps: u32| {
-                let step = 0.1 / f64::from(steps);
-                (0..steps).map(|i| {
-                    (at(f64::from(i + 1) * step) - at(f64::from(i) * step)).length()
-                }).fold(0.0, f64::max)
-            };
-            let (coarse, fine) = (largest(100), largest(2_000));
-            prop_assert!(fine < 0.2 * coarse + 1.0e-3, "{coarse} {fine}");
+            let jump_m = jump_m([phase, rough_m, x, y, heading]);
+            prop_assert!(jump_m < 1e-7, "{jump_m} m");
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::contact::{Body, Contact, ContactLaw, Grip};
-use super::ground::{BAND_M, Touches};
+use super::ground::Touches;
 use super::patch::Patch;
 use super::pose::{Pose, State};
 use super::spatial::{Spatial, angular, velocity_at};
@@ -132,8 +132,8 @@ impl Search {
     }
 }
 
-/// How far from a ball ground can be and still make a force within the step, and a band to share
-/// contacts in, m: a damper acts from k d = c d' on.
+/// How far from a ball ground can be and still make a force within the step, m: a damper acts from
+/// k d = c d' on.
 fn ahead_m(law: &ContactLaw, speed_m_s: f64, dt_s: f64) -> f64 {
-    (law.damping_n_s_m / law.stiffness_n_m + dt_s) * speed_m_s + BAND_M
+    (law.damping_n_s_m / law.stiffness_n_m + dt_s) * speed_m_s
 }

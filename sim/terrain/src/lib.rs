@@ -99,6 +99,7 @@ mod layers;
 mod local_map;
 mod map;
 mod minima;
+mod passes;
 mod raster;
 mod search;
 mod spec;

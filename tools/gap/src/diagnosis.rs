@@ -22,6 +22,7 @@ mod inquiry;
 mod joints;
 mod judgement;
 mod knob;
+mod places;
 mod search;
 mod signals;
 mod stack;
@@ -29,6 +30,7 @@ mod stance;
 mod stands;
 mod travel;
 mod verdict;
+mod watch;
 mod wheel_order;
 
 pub use candidates::Candidate;

@@ -11,12 +11,14 @@ use super::knob::Knob;
 use super::search::search;
 use super::signals::Signals;
 
-/// Instants of every run at which an effect may set in, s from, to and between.
-const SETS_IN_S: [f64; 3] = [4.0, 26.0, 2.0];
+/// Instants of every run at which an effect may set in, s.
+const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
 /// How many of the leading hypotheses are asked when they set in.
 const ASKED: usize = 6;
 /// What a beginning must gain beyond the freedom to choose it, nats.
 const BEGINNING_MIN: f64 = 6.0;
+/// What it must gain with the values of an effect that was always there, nats; else it is not asked.
+const BEGINNING_HINT: f64 = 2.0;
 
 /// A fitted hypothesis with what it is worth on both sets of runs.
 #[derive(Clone, Debug)]
@@ -89,22 +91,23 @@ impl<'a> Docket<'a> {
     }
 
     /// The same candidate setting in late, where that is worth it.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    #[allow(clippy::cast_precision_loss)]
     fn set_in(&self, early: &Candidate) -> Option<Candidate> {
-        let [from, to, by] = SETS_IN_S;
-        let count = ((to - from) / by) as usize + 1;
         let hypothesis = early.fit.hypothesis;
-        let gain = |at_s: f64, values: &[f64]| hypothesis.gain(&self.fit, at_s, values);
-        let instants = (0..count).map(|i| from + by * i as f64);
-        let best = |instants: &mut dyn Iterator<Item = f64>, values: &[f64]| {
-            instants.map(|at_s| (gain(at_s, values), at_s)).max_by(|a, b| a.0.total_cmp(&b.0))
+        let best = |instants: &[f64], values: &[f64]| {
+            let gains = hypothesis.onset_gains(&self.fit, instants, values);
+            let each = gains.into_iter().zip(instants.iter().copied());
+            each.max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let (_, at_s) = best(&mut instants.into_iter(), &early.fit.values)?;
+        let whole = hypothesis.gain(&self.fit, 0.0, &early.fit.values);
+        let (gain, at_s) = best(&SETS_IN_S, &early.fit.values)?;
+        if gain < whole + BEGINNING_HINT {
+            return None;
+        }
         let late = hypothesis.refit(&self.fit, at_s, &early.fit.values);
-        let near = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|shift| at_s + shift);
-        let (_, at_s) = best(&mut near.into_iter(), &late.values)?;
+        let (_, at_s) = best(&[-1.0, -0.5, 0.0, 0.5, 1.0].map(|by| at_s + by), &late.values)?;
         let mut late = hypothesis.refit(&self.fit, at_s, &late.values);
-        late.log_evidence -= (count as f64).ln();
+        late.log_evidence -= (SETS_IN_S.len() as f64).ln();
         let late = self.weighed(late);
         (late.score() > early.score() + BEGINNING_MIN).then_some(late)
     }

@@ -1,5 +1,8 @@
 //! The whole diagnosis of one inquiry, step after step.
 
+use xt28_sim::Effects;
+use xt28_sim::effects::Effect;
+
 use super::candidates::{Candidate, Docket};
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
@@ -8,6 +11,10 @@ use super::verdict::Diagnosis;
 
 /// A second cause must be worth this much, nats.
 const SECOND_MIN: f64 = 12.0;
+/// How many of the single candidates may be the first of a pair.
+const LIKELY: usize = 12;
+/// Second causes that are kept.
+const LISTED: usize = 10;
 
 /// How far a diagnosis has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,44 +51,52 @@ impl Inquiry {
             return Findings { before, single, pair: Vec::new(), after: Vec::new() };
         };
         tell("trying second causes", 0.4);
-        let pair = self.second(&docket, &best);
+        let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
         let after = match pair.first() {
-            Some([first, second]) => {
-                let base = first.fit.hypothesis.applied(&self.believed, &first.fit.values);
-                docket(&base).left(&[&second.fit])
-            }
+            Some([_, second]) => beside.left(&[&second.fit]),
             None => first.left(&[&best.fit]),
         };
         Findings { before, single, pair, after }
     }
 
-    /// Two causes at once, the best first; none where one is enough.
+    /// Two causes at once, the best first, none where one is enough; and the docket beside the first.
     ///
-    /// With the first believed, a second is sought; with that believed, the first is sought anew,
-    /// for it was found while the second still disturbed.
+    /// With the first believed, a second is sought; with that believed, the first is sought anew among
+    /// the likely ones, for it was found while the second still disturbed.
     fn second<'a>(
         &self,
-        docket: &dyn Fn(&xt28_sim::Effects) -> Docket<'a>,
-        best: &Candidate,
-    ) -> Vec<[Candidate; 2]> {
-        let beside = |one: &Candidate| {
-            let base = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
-            let others: Vec<_> = self
-                .catalogue
-                .iter()
-                .copied()
-                .filter(|effect| *effect != one.fit.hypothesis.effect)
-                .collect();
-            docket(&base).candidates(&others)
+        docket: &dyn Fn(&Effects) -> Docket<'a>,
+        single: &[Candidate],
+    ) -> (Vec<[Candidate; 2]>, Docket<'a>) {
+        let beside =
+            |one: &Candidate| docket(&one.fit.hypothesis.applied(&self.believed, &one.fit.values));
+        let others = |one: &Candidate, among: &[&'static Effect]| -> Vec<&'static Effect> {
+            among.iter().copied().filter(|effect| *effect != one.fit.hypothesis.effect).collect()
         };
-        let seconds = beside(best);
-        let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN) else {
-            return Vec::new();
+        let mut first = single[0].clone();
+        let mut court = beside(&first);
+        let mut seconds = court.candidates(&others(&first, &self.catalogue));
+        let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
+        else {
+            return (Vec::new(), court);
         };
-        let firsts = beside(second);
-        let again = firsts.first().filter(|first| first.score() > SECOND_MIN).cloned();
-        let first = again.unwrap_or_else(|| best.clone());
-        seconds.into_iter().take(10).map(|second| [first.clone(), second]).collect()
+        let mut likely: Vec<&'static Effect> = Vec::new();
+        for candidate in single.iter().take(LIKELY) {
+            if !likely.contains(&candidate.fit.hypothesis.effect) {
+                likely.push(candidate.fit.hypothesis.effect);
+            }
+        }
+        let again = beside(&second).candidates(&others(&second, &likely));
+        if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
+            let moved = better.fit.hypothesis != first.fit.hypothesis;
+            first = better.clone();
+            if moved {
+                court = beside(&first);
+                seconds = court.candidates(&[second.fit.hypothesis.effect]);
+            }
+        }
+        let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
+        (pairs.collect(), court)
     }
 }

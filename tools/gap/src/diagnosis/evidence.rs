@@ -18,10 +18,9 @@ use super::generator::{Generator, Signal};
 use super::knob::Knob;
 use super::search::Memory;
 use super::signals::Signals;
-use super::stack::Stack;
+use super::stack::Group;
+use super::watch::{Sums, Watch};
 
-/// Share of a knob's tolerance by which it is nudged.
-const NUDGE: f64 = 0.05;
 /// How many samples one's belief in a floor is worth.
 const SCALE_SAMPLES: f64 = 10.0;
 /// Rounds in which scales and tolerances settle on each other.
@@ -39,30 +38,6 @@ pub struct Evidence<'a> {
     /// Of the knobs' posterior precision.
     factor: Cholesky<f64, Dyn>,
     knobs: Vec<Knob>,
-}
-
-/// One generator with its residuals at the base and their slopes.
-struct Watch {
-    stack: Stack,
-    /// Knobs it answers to.
-    knobs: Vec<usize>,
-    /// How it answers to each, per sample and tolerance.
-    slopes: Vec<Vec<f64>>,
-    /// Products of slopes in each group.
-    products: Vec<DMatrix<f64>>,
-    /// Weight of each group at the base, when tolerances are set.
-    weights: Vec<f64>,
-    /// Of the base.
-    sums: Sums,
-}
-
-/// What the cost needs to know of one generator's residuals.
-#[derive(Clone, Debug)]
-pub(super) struct Sums {
-    /// Squares in each group.
-    squares: Vec<f64>,
-    /// Slopes times residuals in each group, by the watch's own knobs.
-    gradients: Vec<DVector<f64>>,
 }
 
 /// What one signal leaves.
@@ -153,6 +128,29 @@ impl<'a> Evidence<'a> {
         self.cost_of(&sums)
     }
 
+    /// What it costs to believe `effects` from each of `instants` of every run on, s.
+    pub(super) fn onset_costs(
+        &self,
+        effects: &Effects,
+        only: &dyn Fn(Generator) -> bool,
+        instants: &[f64],
+    ) -> Vec<f64> {
+        let late: Vec<Vec<Cow<'_, Sums>>> = self
+            .watches
+            .iter()
+            .map(|watch| {
+                if only(watch.stack.generator) {
+                    let all = watch.onsets(self.runs, &self.machine, effects, instants);
+                    all.into_iter().map(Cow::Owned).collect()
+                } else {
+                    instants.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()
+                }
+            })
+            .collect();
+        let at = |k: usize| late.iter().map(|all| all[k].clone()).collect::<Vec<_>>();
+        (0..instants.len()).map(|k| self.cost_of(&at(k))).collect()
+    }
+
     fn cost_of(&self, sums: &[Cow<'_, Sums>]) -> f64 {
         let step = self.step(sums);
         let left = self.remaining(sums, &step);
@@ -216,7 +214,7 @@ impl<'a> Evidence<'a> {
         let sums: Vec<_> = self.watches.iter().map(|watch| Cow::Borrowed(&watch.sums)).collect();
         let left = self.remaining(&sums, &self.step(&sums));
         for (watch, squares) in self.watches.iter_mut().zip(&left) {
-            let weigh = |(group, square): (&super::stack::Group, &f64)| {
+            let weigh = |(group, square): (&Group, &f64)| {
                 (SCALE_SAMPLES + group.samples) / (SCALE_SAMPLES + square)
             };
             watch.weights = watch.stack.groups.iter().zip(squares).map(weigh).collect();
@@ -280,84 +278,4 @@ fn precision(watches: &[Watch], knobs: usize) -> Cholesky<f64, Dyn> {
         }
     }
     Cholesky::new(precision).expect("a sum of squares and the identity")
-}
-
-impl Watch {
-    fn new(
-        generator: Generator,
-        runs: &[Signals],
-        machine: &Machine,
-        base: &Effects,
-        knobs: &[Knob],
-    ) -> Self {
-        let stack = Stack::new(generator, runs, machine, base);
-        let slope = |knob: &Knob| {
-            if let Knob::Effect(effect, _, scope) = knob
-                && !generator.hears(effect, *scope)
-            {
-                return None;
-            }
-            let (mut machine, mut effects) = (machine.clone(), base.clone());
-            let at = match knob {
-                Knob::Effect(_, parameter, scope) => parameter.get(base, *scope),
-                Knob::Machine(_) => 1.0,
-            };
-            knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
-            let nudged = stack.again(runs, &machine, &effects);
-            let slope: Vec<f64> =
-                nudged.iter().zip(&stack.values).map(|(n, b)| (n - b) / NUDGE).collect();
-            slope.iter().any(|s| *s != 0.0).then_some(slope)
-        };
-        let (mut own, mut slopes) = (Vec::new(), Vec::new());
-        for (index, knob) in knobs.iter().enumerate() {
-            if let Some(slope) = slope(knob) {
-                own.push(index);
-                slopes.push(slope);
-            }
-        }
-        let groups = stack.groups.len();
-        let mut products = vec![DMatrix::zeros(own.len(), own.len()); groups];
-        for (i, a) in slopes.iter().enumerate() {
-            for (j, b) in slopes.iter().enumerate().skip(i) {
-                for ((l, r), &group) in a.iter().zip(b).zip(&stack.group) {
-                    products[group][(i, j)] += l * r;
-                }
-                for product in &mut products {
-                    product[(j, i)] = product[(i, j)];
-                }
-            }
-        }
-        let mut watch = Self {
-            stack,
-            knobs: own,
-            slopes,
-            products,
-            weights: vec![1.0; groups],
-            sums: Sums { squares: Vec::new(), gradients: Vec::new() },
-        };
-        watch.sums = watch.sums_of(&watch.stack.values);
-        watch
-    }
-
-    fn again(&self, runs: &[Signals], machine: &Machine, belief: Belief<'_>) -> Sums {
-        let mut values = self.stack.again(runs, machine, belief.effects);
-        if belief.from_s > 0.0 {
-            for (i, value) in values.iter_mut().enumerate() {
-                if self.stack.at_s[i] < belief.from_s {
-                    *value = self.stack.values[i];
-                }
-            }
-        }
-        self.sums_of(&values)
-    }
-
-    fn sums_of(&self, values: &[f64]) -> Sums {
-        let mut gradients = vec![DVector::zeros(self.knobs.len()); self.stack.groups.len()];
-        for (knob, slope) in self.slopes.iter().enumerate() {
-            for ((s, r), &group) in slope.iter().zip(values).zip(&self.stack.group) {
-                gradients[group][knob] += s * r;
-            }
-        }
-        Sums { squares: self.stack.squares(values), gradients }
-    }
 }

@@ -90,6 +90,19 @@ impl Hypothesis {
         0.5 * (evidence.base_cost() - evidence.cost(belief, &only))
     }
 
+    /// The same for an effect that sets in at each of `instants` of every run, s.
+    pub(super) fn onset_gains(
+        &self,
+        evidence: &Evidence<'_>,
+        instants: &[f64],
+        values: &[f64],
+    ) -> Vec<f64> {
+        let effects = self.applied(&evidence.base, values);
+        let only = |generator: Generator| generator.hears(self.effect, self.scope);
+        let costs = evidence.onset_costs(&effects, &only, instants);
+        costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
+    }
+
     /// What is left and what one has to believe for it.
     fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
         let only = |generator: Generator| generator.hears(self.effect, self.scope);

@@ -7,13 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use xt28_sim::effects::Scope;
-
 use super::candidates::Candidate;
 use super::evidence::Left;
 use super::excitation::not_testable;
 use super::inquiry::Inquiry;
-use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Place, Verdict};
+use super::places::places;
+use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
 const SOMETHING: [f64; 2] = [20.0, 3.0];
@@ -156,23 +155,6 @@ fn estimates(candidate: &Candidate) -> Vec<Estimate> {
         }
     };
     parameters.map(estimate).collect()
-}
-
-/// Blocks by their gap, largest first; wheels of a block that part alike are one scope.
-fn places(before: &[Left]) -> Vec<Place> {
-    let total: f64 = before.iter().map(|left| (left.square - 1.0).max(0.0)).sum();
-    let mut places: Vec<Place> = before
-        .iter()
-        .map(|left| Place {
-            block: left.generator.block(),
-            scope: left.generator.wheel().map_or(Scope::All, Scope::Wheel),
-            residual: left.signal.to_string(),
-            gap_over_noise: left.square.sqrt(),
-            share: if total > 0.0 { (left.square - 1.0).max(0.0) / total } else { 0.0 },
-        })
-        .collect();
-    places.sort_by(|a, b| b.gap_over_noise.total_cmp(&a.gap_over_noise));
-    places
 }
 
 fn notes(inquiry: &Inquiry) -> Vec<String> {

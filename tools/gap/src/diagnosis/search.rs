@@ -5,14 +5,15 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use xt28_sim::effects::{Effect, Parameter};
 
-use super::evidence::{Belief, Evidence, Sums};
+use super::evidence::{Belief, Evidence};
 use super::generator::Generator;
 use super::hypothesis::{Fit, Hypothesis};
+use super::watch::Sums;
 
 /// Grid of the first look, in tolerances from neutral.
 const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
 /// How many hypotheses are followed to their best values.
-const FOLLOWED: usize = 36;
+const FOLLOWED: usize = 24;
 /// How many starts of one hypothesis, if they are the leading ones.
 const STARTS: usize = 2;
 /// Hypotheses that count as leading.

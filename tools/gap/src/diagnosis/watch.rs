@@ -1,0 +1,131 @@
+//! One generator with its residuals at the base, and how they answer to every knob.
+
+use nalgebra::{DMatrix, DVector};
+use xt28_machine::Machine;
+use xt28_sim::Effects;
+
+use super::evidence::Belief;
+use super::generator::Generator;
+use super::knob::Knob;
+use super::signals::Signals;
+use super::stack::Stack;
+
+/// Share of a knob's tolerance by which it is nudged.
+const NUDGE: f64 = 0.05;
+
+/// One generator with its residuals at the base and their slopes.
+pub(super) struct Watch {
+    pub(super) stack: Stack,
+    /// Knobs it answers to.
+    pub(super) knobs: Vec<usize>,
+    /// How it answers to each, per sample and tolerance.
+    slopes: Vec<Vec<f64>>,
+    /// Products of slopes in each group.
+    pub(super) products: Vec<DMatrix<f64>>,
+    /// Weight of each group at the base, when tolerances are set.
+    pub(super) weights: Vec<f64>,
+    /// Of the base.
+    pub(super) sums: Sums,
+}
+
+/// What the cost needs to know of one generator's residuals.
+#[derive(Clone, Debug)]
+pub(super) struct Sums {
+    /// Squares in each group.
+    pub(super) squares: Vec<f64>,
+    /// Slopes times residuals in each group, by the watch's own knobs.
+    pub(super) gradients: Vec<DVector<f64>>,
+}
+
+impl Watch {
+    /// Residuals of `generator` around `base`, and how they answer to each of `knobs`.
+    pub(super) fn new(
+        generator: Generator,
+        runs: &[Signals],
+        machine: &Machine,
+        base: &Effects,
+        knobs: &[Knob],
+    ) -> Self {
+        let stack = Stack::new(generator, runs, machine, base);
+        let slope = |knob: &Knob| {
+            if let Knob::Effect(effect, _, scope) = knob
+                && !generator.hears(effect, *scope)
+            {
+                return None;
+            }
+            let (mut machine, mut effects) = (machine.clone(), base.clone());
+            let at = match knob {
+                Knob::Effect(_, parameter, scope) => parameter.get(base, *scope),
+                Knob::Machine(_) => 1.0,
+            };
+            knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
+            let nudged = stack.again(runs, &machine, &effects);
+            let slope: Vec<f64> =
+                nudged.iter().zip(&stack.values).map(|(n, b)| (n - b) / NUDGE).collect();
+            slope.iter().any(|s| *s != 0.0).then_some(slope)
+        };
+        let (mut own, mut slopes) = (Vec::new(), Vec::new());
+        for (index, knob) in knobs.iter().enumerate() {
+            if let Some(slope) = slope(knob) {
+                own.push(index);
+                slopes.push(slope);
+            }
+        }
+        let groups = stack.groups.len();
+        let mut products = vec![DMatrix::zeros(own.len(), own.len()); groups];
+        for (i, a) in slopes.iter().enumerate() {
+            for (j, b) in slopes.iter().enumerate().skip(i) {
+                for ((l, r), &group) in a.iter().zip(b).zip(&stack.group) {
+                    products[group][(i, j)] += l * r;
+                }
+                for product in &mut products {
+                    product[(j, i)] = product[(i, j)];
+                }
+            }
+        }
+        let mut watch = Self {
+            stack,
+            knobs: own,
+            slopes,
+            products,
+            weights: vec![1.0; groups],
+            sums: Sums { squares: Vec::new(), gradients: Vec::new() },
+        };
+        watch.sums = watch.sums_of(&watch.stack.values);
+        watch
+    }
+
+    /// What the cost needs to know under another belief.
+    pub(super) fn again(&self, runs: &[Signals], machine: &Machine, belief: Belief<'_>) -> Sums {
+        let values = self.stack.again(runs, machine, belief.effects);
+        self.sums_of(&self.stitched(&values, belief.from_s))
+    }
+
+    /// The same for effects that set in at each of `instants` of every run, s.
+    pub(super) fn onsets(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        effects: &Effects,
+        instants: &[f64],
+    ) -> Vec<Sums> {
+        let values = self.stack.again(runs, machine, effects);
+        instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
+    }
+
+    /// The base before `from_s` of every run, `values` after.
+    fn stitched(&self, values: &[f64], from_s: f64) -> Vec<f64> {
+        let both = values.iter().zip(&self.stack.values).zip(&self.stack.at_s);
+        both.map(|((value, base), at_s)| if *at_s < from_s { *base } else { *value }).collect()
+    }
+
+    fn sums_of(&self, values: &[f64]) -> Sums {
+        let mut gradients = vec![DVector::zeros(self.knobs.len()); self.stack.groups.len()];
+        for (knob, slope) in self.slopes.iter().enumerate() {
+            for ((s, r), &group) in slope.iter().zip(values).zip(&self.stack.group) {
+                gradients[group][knob] += s * r;
+            }
+        }
+        Sums { squares: self.stack.squares(values), gradients }
+    }
+}

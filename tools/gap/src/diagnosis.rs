@@ -12,6 +12,7 @@ mod arms;
 mod candidates;
 mod controllers;
 mod descent;
+pub mod details;
 mod diagnose;
 mod driving;
 mod evidence;
@@ -34,6 +35,7 @@ mod watch;
 mod wheel_order;
 
 pub use candidates::Candidate;
+pub use details::Details;
 pub use diagnose::Progress;
 pub use evidence::{Belief, Evidence, Left};
 pub use excitation::not_testable;

@@ -1,7 +1,24 @@
-//! A diagnosis for people: in words for a terminal.
+//! A diagnosis for people: in words for a terminal, and as two pages to print, one for who decides
+//! and one for who mends.
+//!
+//! The pages are one HTML file with its drawings inline: no script, nothing fetched, and every text
+//! that comes from a log is escaped.
 
+mod assumptions;
+mod chart;
+mod colour;
+mod engineer;
+mod heat;
+mod horizon;
+mod html;
+mod machine_view;
+mod manager;
+mod svg;
+mod table;
 mod text;
+mod trace;
 mod words;
 
+pub use html::{Subject, html};
 pub use text::text;
 pub use words::headline;

@@ -5,8 +5,9 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_gap::diagnosis::{Diagnosis, Inquiry, Progress, Verdict as Answer};
-use xt28_gap::{Choice, Decoder, Known, Mapping, RunSet, Use, page};
+use xt28_gap::diagnosis::{Details, Diagnosis, Inquiry, Progress, Verdict as Answer};
+use xt28_gap::page::Subject;
+use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
@@ -62,6 +63,9 @@ pub(crate) struct Diagnose {
     /// Write the answer as JSON into this file
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
+    /// Write a report of two pages into this file (HTML), one for who decides, one for who mends
+    #[arg(long, value_name = "OUT")]
+    report: Option<PathBuf>,
     /// Write the causes found into this file (TOML), for `--effects` of other commands
     #[arg(long, value_name = "OUT")]
     overlay: Option<PathBuf>,
@@ -82,7 +86,7 @@ impl Diagnose {
         bar.finish_and_clear();
         diagnosis.notes.splice(0..0, notes);
         diagnosis.seconds = start.elapsed().as_secs_f64();
-        self.write(&diagnosis)?;
+        self.write(&inquiry, &diagnosis)?;
         print!("{}", page::text(&diagnosis));
         Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
     }
@@ -95,8 +99,7 @@ impl Diagnose {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let believed =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let beside = self.logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
-        let about = self.about.clone().or_else(|| beside.exists().then_some(beside));
+        let about = self.about();
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let choice = set.choose(&self.fit, &self.held)?;
@@ -109,7 +112,23 @@ impl Diagnose {
         Ok((inquiry, notes))
     }
 
-    fn write(&self, diagnosis: &Diagnosis) -> Result<(), Failure> {
+    /// What speaks of the logs, where anything does.
+    fn about(&self) -> Option<PathBuf> {
+        let beside = self.logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
+        self.about.clone().or_else(|| beside.exists().then_some(beside))
+    }
+
+    /// What the report is about.
+    fn subject(&self) -> Result<Subject, Failure> {
+        let Some(path) = self.about() else {
+            let name = self.logs[0].file_name().unwrap_or_default();
+            return Ok(Subject { name: name.to_string_lossy().into_owned(), date: String::new() });
+        };
+        let about = About::load(&path)?;
+        Ok(Subject { name: about.case, date: about.date.unwrap_or_default() })
+    }
+
+    fn write(&self, inquiry: &Inquiry, diagnosis: &Diagnosis) -> Result<(), Failure> {
         let json = self.json.as_ref().map(|path| -> Result<_, Failure> {
             Ok((path, format!("{}\n", serde_json::to_string_pretty(diagnosis)?)))
         });
@@ -117,7 +136,11 @@ impl Diagnose {
             let head = page::headline(diagnosis).replace('\n', " ");
             Ok((path, format!("# {head}\n\n{}", diagnosis.overlay().to_toml())))
         });
-        for file in [json, overlay].into_iter().flatten() {
+        let report = self.report.as_ref().map(|path| {
+            let details = Details::new(inquiry, diagnosis);
+            Ok((path, page::html(&self.subject()?, &inquiry.machine, diagnosis, &details)))
+        });
+        for file in [json, report, overlay].into_iter().flatten() {
             let (path, text) = file?;
             std::fs::write(path, text).map_err(|error| {
                 let path = path.display();

@@ -1,0 +1,128 @@
+//! What a report shows beside the verdict: the gap by block and regime and over the horizon, and
+//! traces before and after. Nothing here takes part in the verdict.
+//!
+//! Residuals are those of the machine as believed, without the tolerances at their best: a report
+//! shows what the simulator does as it stands, and what it does with the causes put in.
+
+mod horizons;
+mod regimes;
+mod traces;
+
+use rayon::prelude::*;
+use xt28_machine::Wheel;
+use xt28_sim::Effects;
+
+use super::generator::{Generator, Residual};
+use super::inquiry::Inquiry;
+use super::verdict::Diagnosis;
+
+pub use horizons::{Curve, HORIZONS_S};
+pub use regimes::{REGIMES, Row};
+pub use traces::Trace;
+
+/// Time between two samples of a residual, s.
+const STEP_S: f64 = 0.1;
+
+/// The details of one diagnosis.
+#[derive(Clone, Debug)]
+pub struct Details {
+    /// The runs.
+    pub runs: Vec<RunLine>,
+    /// Root mean square of every generator's residual in each of [`REGIMES`], floors.
+    pub map: Vec<Row>,
+    /// How every generator's error grows with time, the largest gap first.
+    pub horizons: Vec<Curve>,
+    /// Where the gap is largest on runs that were not fitted, before and after; on fitted ones where
+    /// all were.
+    pub traces: Vec<Trace>,
+    /// Whether there are causes to put in: else before and after are the same.
+    pub has_after: bool,
+    /// What is wrong with the logs, a line each.
+    pub faults: Vec<String>,
+}
+
+/// One run of a report.
+#[derive(Clone, Debug)]
+pub struct RunLine {
+    /// Name of the log, without its folder.
+    pub name: String,
+    /// Length, s.
+    pub seconds: f64,
+    /// Frames in the log.
+    pub frames: u64,
+    /// Whether causes were fitted on it.
+    pub fit: bool,
+}
+
+/// Residuals of one generator on one run, before and after.
+struct Pair {
+    run: usize,
+    generator: Generator,
+    before: Vec<Residual>,
+    after: Vec<Residual>,
+}
+
+impl Details {
+    /// The details of `diagnosis`, which answers `inquiry`.
+    #[must_use]
+    pub fn new(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Self {
+        let overlay = diagnosis.overlay();
+        let mut with_causes = inquiry.believed.clone();
+        overlay.entries.iter().for_each(|entry| entry.apply(&mut with_causes));
+        let pairs = pairs(inquiry, &with_causes);
+        Self {
+            runs: inquiry
+                .runs
+                .iter()
+                .map(|run| RunLine {
+                    name: file_name(run.log.name()),
+                    seconds: run.signals.duration_s(),
+                    frames: run.log.frames(),
+                    fit: run.fit,
+                })
+                .collect(),
+            map: regimes::map(inquiry, &pairs),
+            horizons: horizons::curves(&pairs),
+            traces: traces::traces(inquiry, &pairs),
+            has_after: !overlay.entries.is_empty(),
+            faults: inquiry
+                .runs
+                .iter()
+                .flat_map(|run| run.log.faults().iter().map(ToString::to_string))
+                .collect(),
+        }
+    }
+}
+
+fn pairs(inquiry: &Inquiry, with_causes: &Effects) -> Vec<Pair> {
+    let runs = 0..inquiry.runs.len();
+    let jobs: Vec<(usize, Generator)> =
+        runs.flat_map(|run| Generator::all().into_iter().map(move |g| (run, g))).collect();
+    let pair = |(run, generator): (usize, Generator)| {
+        let signals = &inquiry.runs[run].signals;
+        let of = |effects| generator.residuals(signals, &inquiry.machine, effects);
+        Pair { run, generator, before: of(&inquiry.believed), after: of(with_causes) }
+    };
+    jobs.into_par_iter().map(pair).collect()
+}
+
+/// Root mean square of what is finite; `None` without any.
+#[allow(clippy::cast_precision_loss)]
+fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, n) =
+        values.filter(|v| v.is_finite()).fold((0.0, 0_usize), |(sum, n), v| (sum + v * v, n + 1));
+    (n > 0).then(|| (sum / n as f64).sqrt())
+}
+
+/// The wheel whose arm a generator drives.
+const fn wheel_of(generator: Generator) -> Option<Wheel> {
+    match generator {
+        Generator::ArmStroke(wheel) | Generator::ArmEcu(wheel) => Some(wheel),
+        _ => None,
+    }
+}
+
+/// The last part of a path, whichever way its folders are parted.
+fn file_name(path: &str) -> String {
+    path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
+}

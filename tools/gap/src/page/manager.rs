@@ -1,0 +1,134 @@
+//! Page one, for who decides: what it is, how sure, where, how much it matters, what to do.
+
+use core::fmt::Write as _;
+
+use xt28_machine::Machine;
+
+use super::colour::{AFTER, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
+use super::machine_view;
+use super::svg::{Anchor, Svg, escape};
+use super::words::{headline, percent, shrinks};
+use crate::diagnosis::{Details, Diagnosis, Verdict};
+
+/// The page's body.
+pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
+    let mut meanings = String::new();
+    for cause in diagnosis.stood_by() {
+        let _ = write!(
+            meanings,
+            "<p class=\"meaning\"><b>{}</b>: {}.</p>",
+            escape(cause.effect.name),
+            escape(cause.effect.meaning)
+        );
+    }
+    format!(
+        "<h1>{}</h1>{meanings}<div class=\"columns\"><div>{}</div><div><h2>How sure</h2>{}<h2>How far the gap shrinks</h2>{}<h2>What to do next</h2>{}</div></div>{}",
+        escape(&headline(diagnosis)),
+        machine_view::draw(machine, diagnosis),
+        sureness(diagnosis),
+        shrinking(diagnosis),
+        next(diagnosis),
+        basis(details)
+    )
+}
+
+/// A bar of the probabilities.
+fn sureness(diagnosis: &Diagnosis) -> String {
+    let (width, height) = (350.0, 22.0);
+    let mut parts: Vec<(String, f64, &str)> = Vec::new();
+    let stood: Vec<&str> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
+    // Two causes may each be likely: what the bar shows is that both hold.
+    let first = diagnosis.stood_by().map(|cause| cause.probability).fold(f64::NAN, f64::min);
+    if !stood.is_empty() {
+        parts.push((stood.join(" and "), first, BEFORE));
+    }
+    let rest = 1.0
+        - if stood.is_empty() { 0.0 } else { first }
+        - diagnosis.probability_none
+        - diagnosis.probability_unknown;
+    parts.push(("other causes".to_owned(), rest.max(0.0), OTHER));
+    parts.push(("nothing beyond tolerances".to_owned(), diagnosis.probability_none, NOTHING));
+    parts.push(("not in the catalogue".to_owned(), diagnosis.probability_unknown, UNKNOWN));
+    let total: f64 = parts.iter().map(|(_, share, _)| share).sum();
+    let mut svg = Svg::new(width, height + 18.0 * 4.0 + 8.0);
+    let (mut x, mut y) = (0.0, height + 18.0);
+    for (name, share, colour) in &parts {
+        let part = width * share / total.max(1e-9);
+        svg.rect([x, 0.0], [part, height], colour, "none");
+        x += part;
+        svg.rect([0.0, y - 9.0], [10.0, 10.0], colour, "none");
+        let words = format!("{} {name}", percent(*share));
+        svg.text([16.0, y], &words, Anchor::Start, 12.0, INK);
+        y += 18.0;
+    }
+    svg.finish("Probabilities of the causes, of nothing, and of something unknown")
+}
+
+/// What is left of the gap at each horizon.
+fn shrinking(diagnosis: &Diagnosis) -> String {
+    let single = diagnosis.stood_by().find_map(|cause| cause.shrink);
+    let by = diagnosis.together.as_ref().map(|together| together.shrink).or(single);
+    let Some(by) = by else {
+        return match diagnosis.verdict {
+            Verdict::Effect => "<p>Not computed.</p>".to_owned(),
+            Verdict::None => "<p>There is no gap to shrink.</p>".to_owned(),
+            Verdict::Unknown => "<p>Nothing known shrinks it.</p>".to_owned(),
+        };
+    };
+    let mut svg = Svg::new(350.0, 84.0);
+    let rows = [("a tenth of a second", by.one_step), ("5 s", by.five_s), ("whole runs", by.run)];
+    for ((name, share), y) in rows.into_iter().zip([0.0, 26.0, 52.0]) {
+        let left = (1.0 - share).clamp(0.0, 1.5);
+        svg.text([0.0, y + 14.0], name, Anchor::Start, 12.0, INK);
+        svg.rect([120.0, y + 2.0], [140.0, 16.0], "#fbe3d2", "none");
+        svg.rect(
+            [120.0, y + 2.0],
+            [140.0 * left, 16.0],
+            if left > 1.0 { BEFORE } else { AFTER },
+            "none",
+        );
+        svg.text([350.0, y + 14.0], &format!("{} less", shrinks(share)), Anchor::End, 12.0, INK);
+    }
+    format!(
+        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on drives that were not used to find the cause.</p>",
+        svg.finish("What is left of the gap at three horizons")
+    )
+}
+
+fn next(diagnosis: &Diagnosis) -> String {
+    let mut out = String::new();
+    let stood: Vec<&str> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
+    match diagnosis.verdict {
+        Verdict::Effect => {
+            let _ = write!(
+                out,
+                "<p>Put {} into the simulator (the overlay file of this diagnosis does), or mend it on the machine.</p>",
+                escape(&stood.join(" and "))
+            );
+        }
+        Verdict::None => out.push_str("<p>Nothing: simulator and machine agree.</p>"),
+        Verdict::Unknown => out.push_str(
+            "<p>Look at the machine where the drawing is darkest: no known effect explains what is there.</p>",
+        ),
+    }
+    if let Some(next) = &diagnosis.next {
+        let _ = write!(
+            out,
+            "<p>To be surer, drive <b>{}</b>: it tells {} apart.</p>",
+            escape(&next.manoeuvre),
+            escape(&next.separates.join(" and "))
+        );
+    }
+    out
+}
+
+/// What the answer rests on.
+fn basis(details: &Details) -> String {
+    let seconds: f64 = details.runs.iter().map(|run| run.seconds).sum();
+    let fitted = details.runs.iter().filter(|run| run.fit).count();
+    format!(
+        "<p class=\"small\">From {} test drives, {seconds:.0} s in all; {fitted} were used to find the cause, {} to judge it. What was assumed is on the next page.</p>",
+        details.runs.len(),
+        details.runs.len() - fitted
+    )
+}

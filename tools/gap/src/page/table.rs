@@ -1,0 +1,119 @@
+//! Tables of the engineer's page.
+
+use core::fmt::Write as _;
+
+use super::svg::escape;
+use super::words::{on, percent, short, shrinks};
+use crate::diagnosis::{Cause, Details, Diagnosis, Shrink};
+
+/// Causes listed.
+const CAUSES: usize = 6;
+
+/// The likeliest causes.
+pub(super) fn causes(diagnosis: &Diagnosis) -> String {
+    let mut rows = String::new();
+    for cause in diagnosis.causes.iter().take(CAUSES) {
+        let _ = write!(
+            rows,
+            "<tr><td class=\"number\">{}</td><td><b>{}</b><br><small>{}</small></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            percent(cause.probability),
+            escape(cause.effect.name),
+            escape(cause.effect.meaning),
+            if cause.effect.has_scope() { on(cause.scope) } else { "–".to_owned() },
+            parameters(cause),
+            escape(&others(cause)),
+            cause.shrink.as_ref().map_or_else(|| "–".to_owned(), shrink),
+        );
+    }
+    let _ = write!(
+        rows,
+        "<tr><td class=\"number\">{}</td><td colspan=\"5\">nothing beyond ordinary tolerances</td></tr>\
+         <tr><td class=\"number\">{}</td><td colspan=\"5\">something that is not in the catalogue</td></tr>",
+        percent(diagnosis.probability_none),
+        percent(diagnosis.probability_unknown)
+    );
+    format!(
+        "<table><thead><tr><th>probability</th><th>cause</th><th>where</th><th>size (90 % interval)</th><th>not to be told from</th><th>shrinks the gap by</th></tr></thead><tbody>{rows}</tbody></table>"
+    )
+}
+
+fn parameters(cause: &Cause) -> String {
+    let mut out: Vec<String> = cause
+        .parameters
+        .iter()
+        .map(|one| {
+            let [best, low, high] = one.value.map(short);
+            format!("{} {best} <small>({low} to {high})</small>", escape(one.name))
+        })
+        .collect();
+    if let Some(begins) = &cause.begins {
+        out.push(format!("from {:.1} s of {} on", begins.at_s, escape(&begins.run)));
+    }
+    out.join("<br>")
+}
+
+fn others(cause: &Cause) -> String {
+    let others: Vec<&str> =
+        cause.class.iter().copied().filter(|name| *name != cause.effect.name).collect();
+    if others.is_empty() { "–".to_owned() } else { others.join(", ") }
+}
+
+fn shrink(by: &Shrink) -> String {
+    format!(
+        "{} one step<br>{} over 5 s<br>{} over runs",
+        shrinks(by.one_step),
+        shrinks(by.five_s),
+        shrinks(by.run)
+    )
+}
+
+/// All causes beside no effect and a free model, at every horizon.
+pub(super) fn together(diagnosis: &Diagnosis) -> String {
+    let Some(together) = &diagnosis.together else { return String::new() };
+    let row = |name: &str, by: &Shrink| {
+        let cell = |share: f64, [low, high]: [f64; 2]| {
+            format!(
+                "<td class=\"number\">{} <small>({} to {})</small></td>",
+                shrinks(share),
+                shrinks(low),
+                shrinks(high)
+            )
+        };
+        format!(
+            "<tr><td>{}</td>{}{}{}</tr>",
+            escape(name),
+            cell(by.one_step, by.interval[0]),
+            cell(by.five_s, by.interval[1]),
+            cell(by.run, by.interval[2])
+        )
+    };
+    format!(
+        "<h2>How far the gap shrinks on runs that were not fitted</h2>\
+         <table><thead><tr><th>in the simulator</th><th>one step ahead</th><th>5 s ahead</th><th>whole runs</th></tr></thead><tbody>\
+         <tr><td>no effect</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td></tr>{}{}</tbody></table>\
+         <p class=\"small\">1 less the gap after over the gap before; 90 % intervals by bootstrap. Held out: {}.</p>",
+        row(&together.effects.join(" + "), &together.shrink),
+        row("a free model of the errors, without physics", &together.black_box),
+        escape(&together.held_out_runs.join(", "))
+    )
+}
+
+/// The runs.
+pub(super) fn runs(details: &Details) -> String {
+    let rows: String = details
+        .runs
+        .iter()
+        .map(|run| {
+            format!(
+                "<tr><td>{}</td><td class=\"number\">{:.1} s</td><td class=\"number\">{}</td><td>{}</td></tr>",
+                escape(&run.name),
+                run.seconds,
+                run.frames,
+                if run.fit { "fitted on" } else { "held out" }
+            )
+        })
+        .collect();
+    format!(
+        "<table><thead><tr><th>run</th><th>length</th><th>frames</th><th>use</th></tr></thead><tbody>{rows}</tbody></table>"
+    )
+}

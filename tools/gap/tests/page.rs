@@ -1,0 +1,169 @@
+//! The two pages: nothing in a log breaks out of its text, nothing is fetched, every number is one.
+
+mod made_up;
+
+use std::path::Path;
+
+use made_up::{signals, swinging};
+use xt28_gap::diagnosis::{
+    Cause, Details, Diagnosis, Estimate, FieldRun, Inquiry, Next, NotTestable, Place, Shrink,
+    Together, Verdict,
+};
+use xt28_gap::page::{Subject, headline, html, text};
+use xt28_gap::{Decoder, FieldLog, Mapping};
+use xt28_machine::Machine;
+use xt28_sim::effects::{Block, find};
+
+/// A name that would be a program, if a browser took it for one.
+const HOSTILE: &str = "<script>alert('1')</script>&\".log";
+
+fn inquiry() -> Inquiry {
+    let decoder =
+        Decoder::parse(include_str!("field.dbc"), Path::new("field.dbc"), &Mapping::default());
+    let frames = [
+        "0CFF4027#5555555555551299",
+        "0CFF4127#00000000780201A6",
+        "18FE1025#2800280028002900",
+        "18FE1026#2A002B00",
+        "18FE2020#F505F5050C030C03",
+        "18FE202A#2C0F2C0F",
+        "18FE202B#28000000FAFF0A00",
+        "18FE1012#00000000640038FF",
+        "0CFF5229#FE0310C0FF020080",
+    ];
+    let text: String = [1, 9]
+        .iter()
+        .flat_map(|s| frames.iter().map(move |frame| format!("({s}.0) can0 {frame}\n")))
+        .collect();
+    let log = FieldLog::read(text.as_bytes(), HOSTILE, &decoder.unwrap(), false).unwrap();
+    assert!(!log.faults().is_empty(), "the pause is a fault with the log's name in it");
+    let [signals] = signals(&swinging());
+    let run = |fit| FieldRun { log: log.clone(), signals: signals.clone(), fit };
+    Inquiry::new(Machine::xt28(), vec![run(true), run(false)])
+}
+
+fn shrink() -> Shrink {
+    let interval = [[0.5, 0.6], [0.7, 0.9], [0.6, 0.85]];
+    Shrink { one_step: 0.55, five_s: 0.81, run: -0.2, interval }
+}
+
+fn diagnosis(verdict: Verdict) -> Diagnosis {
+    let cause = |name: &str, probability| Cause {
+        effect: find(name).unwrap(),
+        scope: "front".parse().unwrap(),
+        probability,
+        parameters: vec![Estimate {
+            name: find(name).unwrap().parameters[0].name,
+            value: [0.21, 0.19, 0.23],
+        }],
+        class: vec![find(name).unwrap().name, "valve-lag"],
+        begins: None,
+        shrink: Some(shrink()),
+    };
+    let place = |block, scope: &str, gap_over_noise| Place {
+        block,
+        scope: scope.parse().unwrap(),
+        residual: HOSTILE.to_owned(),
+        gap_over_noise,
+        share: 0.5,
+    };
+    Diagnosis {
+        verdict,
+        places: vec![
+            place(Block::Arms, "FR", 84.0),
+            place(Block::Steering, "all", 2.0),
+            place(Block::Payload, "all", 0.0),
+        ],
+        causes: vec![cause("arm-delay", 0.93), cause("leakage-drift", 0.71)],
+        probability_none: 0.01,
+        probability_unknown: 0.02,
+        together: Some(Together {
+            effects: vec!["arm-delay", "leakage-drift"],
+            shrink: shrink(),
+            black_box: shrink(),
+            held_out_runs: vec![HOSTILE.to_owned()],
+        }),
+        next: Some(Next {
+            manoeuvre: HOSTILE.to_owned(),
+            separates: vec!["arm-delay", "valve-lag"],
+            nats: 3.1,
+        }),
+        not_testable: vec![NotTestable {
+            effect: find("steer-lag").unwrap(),
+            lacks: HOSTILE.to_owned(),
+            manoeuvre: "s-turn".to_owned(),
+        }],
+        notes: vec![HOSTILE.to_owned()],
+        seconds: 41.2,
+    }
+}
+
+fn page(verdict: Verdict) -> String {
+    let (inquiry, diagnosis) = (inquiry(), diagnosis(verdict));
+    let details = Details::new(&inquiry, &diagnosis);
+    let subject = Subject { name: HOSTILE.to_owned(), date: HOSTILE.to_owned() };
+    html(&subject, &inquiry.machine, &diagnosis, &details)
+}
+
+/// Every tag of a page is closed, in order.
+fn assert_balanced(page: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    for piece in page.split('<').skip(1) {
+        let tag = piece.split('>').next().unwrap();
+        let name = tag.split([' ', '/']).find(|part| !part.is_empty()).unwrap_or_default();
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "near <{tag}>");
+        } else if !tag.ends_with('/') && !["!DOCTYPE", "meta", "br"].contains(&name) {
+            open.push(name);
+        }
+    }
+    assert_eq!(open, Vec::<&str>::new());
+}
+
+#[test]
+fn a_page_is_whole_and_of_itself() {
+    for verdict in [Verdict::Effect, Verdict::None, Verdict::Unknown] {
+        let page = page(verdict);
+        assert_balanced(&page);
+        for foreign in ["<script", "http:", "https:", "url(", "@import", " src=", "NaN", "inf"] {
+            assert!(!page.contains(foreign), "{foreign} in {verdict:?}");
+        }
+        assert!(page.contains("&lt;script&gt;"), "the name is still there to read");
+    }
+}
+
+#[test]
+fn a_page_says_the_verdict_and_both_causes() {
+    let page = page(Verdict::Effect);
+    let words = "arm-delay at the front axle (probability 93 %), and leakage-drift at the front axle \
+                 (probability 71 %).";
+    assert!(page.contains(words));
+    assert_eq!(headline(&diagnosis(Verdict::Effect)), words);
+    for part in ["noise floors", "horizon, s", "time, s", "stroke, mm", "with the causes put in"] {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn the_same_answer_gives_the_same_bytes() {
+    assert_eq!(page(Verdict::Effect), page(Verdict::Effect));
+}
+
+#[test]
+fn words_for_a_terminal_say_what_the_page_says() {
+    let words = text(&diagnosis(Verdict::Effect));
+    for part in [
+        "arm-delay at the front axle (probability 93 %)",
+        "0.210 (0.190 to 0.230)",
+        "not to be told from valve-lag",
+        "-20 % (60 % to 85 %) over whole runs",
+        "tells arm-delay, valve-lag apart, 3.1 nats expected",
+        "steer-lag",
+    ] {
+        assert!(words.contains(part), "{part}: {words}");
+    }
+    let none = text(&diagnosis(Verdict::None));
+    assert!(none.starts_with("Nothing beyond ordinary tolerances (probability 1 %)."), "{none}");
+    let unknown = text(&diagnosis(Verdict::Unknown));
+    assert!(unknown.contains("no effect of the catalogue explains"), "{unknown}");
+}

@@ -7,10 +7,10 @@ use std::fs;
 use short_drive::{DBC, log, path, xt28};
 
 #[test]
-fn an_answer_comes_as_text_json_and_overlay() {
+fn an_answer_comes_as_text_json_report_and_overlay() {
     let out = tempfile::tempdir().unwrap();
     let file = |name: &str| path(out.path(), name);
-    let (json, overlay) = (file("a.json"), file("a.toml"));
+    let (json, report, overlay) = (file("a.json"), file("a.html"), file("a.toml"));
     let output = xt28(&[
         "gap",
         "diagnose",
@@ -20,6 +20,8 @@ fn an_answer_comes_as_text_json_and_overlay() {
         "--no-how-far",
         "--json",
         &json,
+        "--report",
+        &report,
         "--overlay",
         &overlay,
     ]);
@@ -37,6 +39,9 @@ fn an_answer_comes_as_text_json_and_overlay() {
         assert!(answer[key].is_array(), "{key}");
     }
     assert!(answer["seconds"].as_f64().unwrap() > 0.0);
+    let report = fs::read_to_string(&report).unwrap();
+    assert!(report.starts_with("<!DOCTYPE html>") && report.ends_with("</html>\n"));
+    assert!(report.contains("short.log"));
     // Another command takes the causes found.
     let output = xt28(&["run", "straight-25m", "--effects", &overlay, "--solver", "reduced"]);
     assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));

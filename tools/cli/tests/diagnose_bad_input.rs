@@ -5,11 +5,17 @@ mod short_drive;
 
 use std::fs;
 
-use short_drive::{DBC, log, path};
+use short_drive::{DBC, log, path, xt28};
 use tempfile::TempDir;
 
+/// The one line of a refusal to diagnose.
 fn refusal(arguments: &[&str]) -> String {
-    short_drive::refusal(&[&["--dbc", DBC], arguments].concat())
+    let output = xt28(&[&["gap", "diagnose", "--dbc", DBC], arguments].concat());
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(output.stdout.is_empty(), "a refusal leaves no data");
+    assert_eq!(talk.lines().count(), 1, "{talk}");
+    talk
 }
 
 /// The log with every line changed or left out.

@@ -58,13 +58,3 @@ pub(crate) fn log() -> String {
 pub(crate) fn path(folder: &Path, name: &str) -> String {
     folder.join(name).to_str().unwrap().to_owned()
 }
-
-/// The one line of a refusal to diagnose.
-pub(crate) fn refusal(arguments: &[&str]) -> String {
-    let output = xt28(&[&["gap", "diagnose"], arguments].concat());
-    let talk = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{talk}");
-    assert!(output.stdout.is_empty(), "a refusal leaves no data");
-    assert_eq!(talk.lines().count(), 1, "{talk}");
-    talk
-}

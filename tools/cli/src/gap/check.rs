@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_gap_check::{Examination, Examined, Options, Report, Source};
+use xt28_gap_check::{Examination, Examined, Options, Report, Source, Withheld, curve, sweep};
 
 use crate::{Failure, Verdict};
 
@@ -31,6 +31,13 @@ pub(crate) struct Check {
     /// Write every score and every diagnosis as JSON, and beside it the seal as soon as it is made
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Draw the reliability curve (SVG)
+    #[arg(long, value_name = "FILE")]
+    curve: Option<PathBuf>,
+    /// Also withhold every effect from the catalogue in turn: a machine with it must come out as
+    /// unknown, at the right place
+    #[arg(long)]
+    sweep: bool,
     /// Do not refit effects in the whole simulator: shrink is then not scored
     #[arg(long)]
     no_how_far: bool,
@@ -58,10 +65,17 @@ impl Check {
         let options = Options { how_far: !self.no_how_far, baselines: true };
         let examined = examination.examine(options, &clock, &told)?;
         bar.finish_and_clear();
-        let report = Report::new(&examination, examination.open(examined)?);
+        let mut report = Report::new(&examination, examination.open(examined)?);
+        if self.sweep {
+            let told = |w: &Withheld| eprintln!("without {}: {:?}", w.effect, w.verdict);
+            report = report.with_sweep(sweep(self.seed, &told)?);
+        }
         print!("{}", report.text());
         if let Some(json) = &self.json {
             write(json, &format!("{:#}\n", report.json()))?;
+        }
+        if let Some(picture) = &self.curve {
+            write(picture, &curve(&report.reliability())?)?;
         }
         Ok(Verdict::Positive)
     }

@@ -6,6 +6,7 @@
 //! | answers sealed, every case diagnosed, the seal opened | [`Examination`] |
 //! | what is so, and what was said | [`Truth`], [`Reply`] |
 //! | plain rules on the same logs | [`BASELINES`] |
+//! | each effect withheld from the catalogue in turn | [`sweep`] |
 //! | scores with their intervals, the reliability curve | [`scores`], [`Report`] |
 #![forbid(unsafe_code)]
 
@@ -18,6 +19,7 @@ mod reply;
 mod report;
 mod score;
 mod source;
+mod sweep;
 mod truth;
 mod wilson;
 
@@ -27,9 +29,10 @@ pub use examination::{Clock, Examination, Examined, Judged, Options};
 pub use reply::{Named, Reply};
 pub use report::Report;
 pub use score::{
-    Bin, Score, Scores, Statement, calibration_error, error_by_chance, reliability, scores,
+    Bin, Score, Scores, Statement, calibration_error, curve, error_by_chance, reliability, scores,
     statements,
 };
 pub use source::{MIX, Source};
+pub use sweep::{Withheld, sweep, sweep_scores};
 pub use truth::{Fact, Kind, Truth};
 pub use wilson::wilson;

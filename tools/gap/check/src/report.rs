@@ -12,6 +12,7 @@ use crate::reply::Reply;
 use crate::score::{
     Bin, Score, Scores, Statement, error_by_chance, reliability, scores, statements,
 };
+use crate::sweep::{Withheld, sweep_scores};
 use crate::truth::{Kind, Truth};
 
 /// Scores of one who replied.
@@ -29,6 +30,7 @@ pub struct Report {
     /// Rows that only the diagnosis has.
     own: Scores,
     statements: Vec<Statement>,
+    sweep: Vec<Withheld>,
 }
 
 impl Report {
@@ -46,7 +48,13 @@ impl Report {
         let statements = said.collect();
         let own = own_scores(&cases);
         let (seal, salt) = (examination.seal().to_string(), examination.salt());
-        Self { seal, salt, cases, columns, own, statements }
+        Self { seal, salt, cases, columns, own, statements, sweep: Vec::new() }
+    }
+
+    /// The same with what came of withholding each effect.
+    #[must_use]
+    pub fn with_sweep(self, sweep: Vec<Withheld>) -> Self {
+        Self { sweep, ..self }
     }
 
     /// The scores of the diagnosis by name, as in the table.
@@ -98,7 +106,33 @@ impl Report {
             "value [95 % interval] cases; intervals are Wilson's for shares, a bootstrap for the rest\n"
         )?;
         self.write_reliability(to)?;
-        self.write_wrong(to)
+        self.write_wrong(to)?;
+        if self.sweep.is_empty() { Ok(()) } else { self.write_sweep(to) }
+    }
+
+    fn write_sweep(&self, to: &mut String) -> std::fmt::Result {
+        let [told, placed] = sweep_scores(&self.sweep);
+        writeln!(to, "\neach effect withheld from the catalogue in turn")?;
+        writeln!(to, "{:<32} {}", "unknown, or its class", cell(&told))?;
+        writeln!(to, "{:<32} {}", "at the right place", cell(&placed))?;
+        writeln!(
+            to,
+            "{:<22} {:<7} {:<8} {:<30} largest gap",
+            "effect", "scope", "said", "likeliest"
+        )?;
+        for w in &self.sweep {
+            let verdict = format!("{:?}", w.verdict).to_lowercase();
+            let [named, place] = [&w.named, &w.place].map(|t| t.as_deref().unwrap_or("-"));
+            let marks =
+                [(w.is_told, "  <- named falsely or missed"), (w.is_placed, "  <- wrong place")];
+            let marks = marks.map(|(fine, mark)| if fine { "" } else { mark }).concat();
+            writeln!(
+                to,
+                "{:<22} {:<7} {verdict:<8} {named:<30} {place}{marks}",
+                w.effect, w.scope
+            )?;
+        }
+        Ok(())
     }
 
     fn write_reliability(&self, to: &mut String) -> std::fmt::Result {
@@ -161,6 +195,7 @@ impl Report {
             "reliability": self.reliability(),
             "calibration_error_by_chance": error_by_chance(&self.statements),
             "cases": cases.collect::<Vec<_>>(),
+            "withheld": self.sweep,
         })
     }
 }

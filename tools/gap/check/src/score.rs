@@ -1,11 +1,13 @@
 //! The scores: what was said of every case against what is so.
 
 mod calibration;
+mod curve;
 mod rate;
 
 pub use calibration::{
     Bin, Statement, calibration_error, error_by_chance, reliability, statements,
 };
+pub use curve::curve;
 pub use rate::Score;
 
 use xt28_gap::diagnosis::Verdict;

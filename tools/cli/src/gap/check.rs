@@ -38,6 +38,9 @@ pub(crate) struct Check {
     /// unknown, at the right place
     #[arg(long)]
     sweep: bool,
+    /// Leave the plain rules out: the scores of the diagnosis alone
+    #[arg(long)]
+    no_baselines: bool,
     /// Do not refit effects in the whole simulator: shrink is then not scored
     #[arg(long)]
     no_how_far: bool,
@@ -62,7 +65,7 @@ impl Check {
             bar.inc(1);
             bar.suspend(|| eprintln!("{} in {:.1} s", examined.case, examined.seconds));
         };
-        let options = Options { how_far: !self.no_how_far, baselines: true };
+        let options = Options { how_far: !self.no_how_far, baselines: !self.no_baselines };
         let examined = examination.examine(options, &clock, &told)?;
         bar.finish_and_clear();
         let mut report = Report::new(&examination, examination.open(examined)?);

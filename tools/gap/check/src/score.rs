@@ -9,6 +9,7 @@ pub use calibration::{
 };
 pub use curve::curve;
 pub use rate::Score;
+pub(crate) use rate::average;
 
 use xt28_gap::diagnosis::Verdict;
 

@@ -7,15 +7,18 @@ use xt28_sim::effects::{Scope, find};
 
 use super::{fitted, nearest_scope};
 use crate::reply::{Named, Reply};
+use crate::score::average;
 
 /// Longest lag looked for, samples.
 const LAG_MAX: usize = 100;
-/// Lag from which on a block is late, s: sampling and smoothing make some of their own (assumed).
-const LATE_S: f64 = 0.06;
-/// Share by which a gain may be off (assumed: twice the usual tolerance).
-const OFF_MIN: f64 = 0.1;
-/// Below this spread of its input a block has not been driven.
-const DRIVEN_MIN: f64 = 1e-3;
+/// Lag beyond a block's own from which on it is late, s (assumed).
+const LATE_S: f64 = 0.1;
+/// Share by which a gain may be off: a sound arm's is up to 0.10 (measured on the same).
+const OFF_MIN: f64 = 0.15;
+/// Half of the time over which rates are measured, samples.
+const HALF: usize = 10;
+/// Below this share of full speed, root mean square, a block has not been driven: it holds.
+const DRIVEN_MIN: f64 = 0.04;
 
 /// How one block answers to its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,14 +33,19 @@ pub(super) fn reply(inquiry: &Inquiry) -> Reply {
     let machine = &inquiry.machine;
     let arms = PerWheel::from_fn(|wheel| {
         let full = machine.hydraulics.speed_full_m_s;
-        answer(runs.iter().map(|run| arm(run, wheel, full)))
+        answer(runs.iter().map(|run| arm(run, wheel, full)), full)
     });
     let full = machine.articulation.rate_max_deg_s.to_radians();
-    let joint = answer(runs.iter().map(|run| joint(run, full)));
-    let drive = answer(runs.iter().map(|run| drive(run, inquiry)));
+    let joint = answer(runs.iter().map(|run| joint(run, full)), full);
+    let full = machine.drive.speed_full_m_s / machine.wheels.radius_m;
+    let drive = answer(runs.iter().map(|run| drive(run, inquiry)), full);
+    // A spring with a damper beside it answers late by the quotient of the two.
+    let (lock, vehicle) = (&machine.hydraulics, &machine.vehicle);
+    let arm_s = lock.lock_damping_n_s_m / lock.lock_stiffness_n_m;
+    let joint_s = vehicle.joint_damping_nms / vehicle.joint_stiffness_nm;
     let lags = [
-        ("arm-delay", worst(&arms, |a| a.lag_s)),
-        ("steer-delay", (joint.map_or(0.0, |a| a.lag_s), Scope::All)),
+        ("arm-delay", worst(&arms, |a| a.lag_s - arm_s)),
+        ("steer-delay", (joint.map_or(0.0, |a| a.lag_s - joint_s), Scope::All)),
         ("throttle-delay", (drive.map_or(0.0, |a| a.lag_s), Scope::All)),
     ];
     let gains = [
@@ -74,22 +82,26 @@ fn worst(arms: &PerWheel<Option<Answer>>, how_bad: impl Fn(Answer) -> f64) -> (f
 
 /// Rate of a stroke, expected and measured.
 fn arm(run: &Signals, wheel: Wheel, full_m_s: f64) -> (Vec<f64>, Vec<f64>) {
-    let expected = run.opening[wheel].iter().map(|opening| opening * full_m_s).collect();
-    (expected, run.stroke_rate_m_s[wheel].clone())
+    (expected(&run.opening[wheel], full_m_s), run.stroke_rate_m_s[wheel].clone())
 }
 
-/// Rate of the front joint, expected and measured over 0.2 s.
+/// Rate of the front joint, expected and measured.
 fn joint(run: &Signals, full_rad_s: f64) -> (Vec<f64>, Vec<f64>) {
-    let expected = run.steer_opening[0].iter().map(|opening| opening * full_rad_s).collect();
     let angle = &run.joint_rad[0];
-    let half = 10;
-    let rate = |i: usize| {
-        let (from, to) = (i.saturating_sub(half), (i + half).min(angle.len() - 1));
-        #[allow(clippy::cast_precision_loss)]
-        let span_s = (to - from) as f64 * DT_S;
-        (angle[to] - angle[from]) / span_s
-    };
-    (expected, (0..angle.len()).map(rate).collect())
+    #[allow(clippy::cast_precision_loss)]
+    let rate = |w: &[f64]| (w[w.len() - 1] - w[0]) / ((w.len() - 1).max(1) as f64 * DT_S);
+    (expected(&run.steer_opening[0], full_rad_s), windowed(angle, rate))
+}
+
+/// Rate that an opening asks for, a mean over the time over which rates are measured.
+fn expected(opening: &[f64], full: f64) -> Vec<f64> {
+    windowed(opening, |w| full * average(w))
+}
+
+/// `of` the 0.2 s around each sample.
+fn windowed(samples: &[f64], of: impl Fn(&[f64]) -> f64) -> Vec<f64> {
+    let window = |i: usize| &samples[i.saturating_sub(HALF)..(i + HALF + 1).min(samples.len())];
+    (0..samples.len()).map(|i| of(window(i))).collect()
 }
 
 /// Mean wheel speed, expected from the throttle by the nominal lag, and measured.
@@ -108,27 +120,30 @@ fn drive(run: &Signals, inquiry: &Inquiry) -> (Vec<f64>, Vec<f64>) {
     (expected, (0..run.len).map(mean).collect())
 }
 
-/// Lag of the largest cross-correlation over all runs, and the gain at that lag.
-fn answer(runs: impl Iterator<Item = (Vec<f64>, Vec<f64>)>) -> Option<Answer> {
+/// Lag of the largest cross-correlation over all runs, and the gain at that lag; `None` of a block
+/// that was hardly driven, compared with its `full` speed.
+fn answer(runs: impl Iterator<Item = (Vec<f64>, Vec<f64>)>, full: f64) -> Option<Answer> {
     let runs: Vec<_> = runs.map(|(a, b)| (centred(&a), centred(&b))).collect();
     let power: f64 = runs.iter().flat_map(|(input, _)| input).map(|x| x * x).sum();
     let samples: usize = runs.iter().map(|(input, _)| input.len()).sum();
     #[allow(clippy::cast_precision_loss)]
-    if power < DRIVEN_MIN * DRIVEN_MIN * samples as f64 {
+    if power < (DRIVEN_MIN * full).powi(2) * samples as f64 {
         return None;
     }
-    let correlation = |lag: usize| -> f64 {
-        let one = |(input, output): &(Vec<f64>, Vec<f64>)| {
-            input.iter().zip(output.iter().skip(lag)).map(|(x, y)| x * y).sum::<f64>()
-        };
-        runs.iter().map(one).sum()
+    // Products at a lag, over the samples that overlap there: input with output, and each with itself.
+    let products = |lag: usize| -> [f64; 3] {
+        let pairs = runs.iter().flat_map(|(x, y)| x.iter().zip(y.iter().skip(lag)));
+        pairs.fold([0.0; 3], |[xy, xx, yy], (x, y)| [xy + x * y, xx + x * x, yy + y * y])
     };
-    let (lag, most) = (0..=LAG_MAX)
-        .map(|lag| (lag, correlation(lag)))
-        .max_by(|(_, a), (_, b)| a.total_cmp(b))
-        .expect("there are lags");
+    let coefficient = |lag: usize| {
+        let [xy, xx, yy] = products(lag);
+        xy / (xx * yy).sqrt().max(f64::MIN_POSITIVE)
+    };
+    let best = (0..=LAG_MAX).map(|lag| (coefficient(lag), lag)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let (_, lag) = best.expect("there are lags");
+    let [xy, xx, _] = products(lag);
     #[allow(clippy::cast_precision_loss)]
-    Some(Answer { lag_s: lag as f64 * DT_S, gain: most / power })
+    Some(Answer { lag_s: lag as f64 * DT_S, gain: xy / xx })
 }
 
 #[allow(clippy::cast_precision_loss)]
@@ -148,10 +163,10 @@ mod tests {
         let late = |lag: usize, gain: f64| -> Vec<f64> {
             (0..2000).map(|i| gain * input[usize::max(i, lag) - lag]).collect()
         };
-        let found = answer([(input.clone(), late(23, 0.8))].into_iter()).unwrap();
+        let found = answer([(input.clone(), late(23, 0.8))].into_iter(), 1.0).unwrap();
         assert!((found.lag_s - 0.23).abs() < 0.015, "{found:?}");
         assert!((found.gain - 0.8).abs() < 0.02, "{found:?}");
-        let still = answer([(vec![0.0; 100], vec![0.0; 100])].into_iter());
+        let still = answer([(vec![0.0; 100], vec![0.0; 100])].into_iter(), 1.0);
         assert_eq!(still, None, "a block that was not driven says nothing");
     }
 }

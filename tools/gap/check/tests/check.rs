@@ -20,6 +20,10 @@ fn report(sources: Vec<Source>, options: Options) -> Report {
 
 /// Floors lie a little below what is reached; one who moves a score up moves its floor up.
 #[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "a diagnosis is slow unoptimised; run with --release, as CI does"
+)]
 #[allow(clippy::disallowed_macros)] // What it came to is worth a look even when it passes.
 fn a_small_fixed_set_keeps_its_scores() {
     let options = Options { how_far: false, baselines: false };

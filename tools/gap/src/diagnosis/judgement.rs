@@ -169,3 +169,89 @@ fn notes(inquiry: &Inquiry) -> Vec<String> {
 fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + (-x).exp())
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::{Machine, Wheel};
+    use xt28_sim::effects::{Scope, find};
+
+    use super::super::generator::{Generator, Signal};
+    use super::super::hypothesis::{Fit, Hypothesis};
+    use super::*;
+
+    fn candidate(name: &str, score: f64) -> Candidate {
+        let effect = find(name).unwrap();
+        let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
+        let sigma = vec![0.0; values.len()];
+        let hypothesis = Hypothesis { effect, scope: Scope::All };
+        let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
+        Candidate { fit, held_gain: 0.0 }
+    }
+
+    fn left(square: f64) -> Vec<Left> {
+        let generator = Generator::ArmStroke(Wheel::Fr);
+        vec![Left { generator, signal: Signal::Stroke, square, samples: 100.0 }]
+    }
+
+    fn judged(before: f64, after: f64, single: Vec<Candidate>) -> Diagnosis {
+        let findings =
+            Findings { before: left(before), single, pair: Vec::new(), after: left(after) };
+        judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
+    }
+
+    #[test]
+    fn a_quiet_machine_has_nothing() {
+        let diagnosis = judged(1.2, 1.1, vec![candidate("arm-delay", 2.0)]);
+        assert_eq!(diagnosis.verdict, Verdict::None);
+        assert!(diagnosis.causes.iter().all(|cause| cause.probability < 0.5));
+        assert!(diagnosis.probability_none > 0.9);
+    }
+
+    #[test]
+    fn a_gap_that_is_explained_has_its_cause() {
+        let all = vec![candidate("leakage-drift", 2000.0), candidate("valve-gain", 900.0)];
+        let diagnosis = judged(400.0, 1.3, all);
+        assert_eq!(diagnosis.verdict, Verdict::Effect);
+        assert_eq!(diagnosis.causes[0].effect.name, "leakage-drift");
+        assert!(diagnosis.causes[0].probability > 0.9);
+        assert_eq!(diagnosis.causes[0].class, ["leakage-drift"]);
+    }
+
+    #[test]
+    fn a_gap_that_the_best_cause_leaves_open_is_unknown() {
+        let diagnosis = judged(400.0, 250.0, vec![candidate("leakage-drift", 300.0)]);
+        assert_eq!(diagnosis.verdict, Verdict::Unknown);
+        assert!(diagnosis.causes[0].probability < 0.5);
+    }
+
+    #[test]
+    fn effects_that_the_logs_cannot_part_are_a_class() {
+        let all = vec![candidate("arm-delay", 80.0), candidate("valve-lag", 79.0)];
+        let diagnosis = judged(30.0, 1.0, all);
+        assert_eq!(diagnosis.causes[0].class, ["arm-delay", "valve-lag"]);
+        assert!(diagnosis.causes[0].probability < 0.9);
+    }
+
+    #[test]
+    fn both_of_a_pair_are_stood_by() {
+        let [a, b] = [candidate("arm-delay", 500.0), candidate("payload", 300.0)];
+        let findings = Findings {
+            before: left(100.0),
+            single: vec![a.clone(), b.clone()],
+            pair: vec![[a, b]],
+            after: left(1.0),
+        };
+        let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
+        let stood: Vec<&str> =
+            diagnosis.causes.iter().filter(|c| c.probability > 0.5).map(|c| c.effect.name).collect();
+        assert_eq!(stood, ["arm-delay", "payload"]);
+    }
+
+    #[test]
+    fn probabilities_make_one() {
+        let all = vec![candidate("arm-delay", 30.0), candidate("payload", 25.0)];
+        let d = judged(9.0, 4.0, all);
+        let known: f64 = d.causes.iter().map(|cause| cause.probability).sum();
+        assert!((known + d.probability_none + d.probability_unknown - 1.0).abs() < 1e-9);
+    }
+}

@@ -63,7 +63,7 @@ impl Check {
         let clock = || started.elapsed().as_secs_f64();
         let told = |examined: &Examined| {
             bar.inc(1);
-            bar.suspend(|| eprintln!("{} in {:.1} s", examined.case, examined.seconds));
+            bar.suspend(|| eprintln!("{}", line(examined)));
         };
         let options = Options { how_far: !self.no_how_far, baselines: !self.no_baselines };
         let examined = examination.examine(options, &clock, &told)?;
@@ -82,6 +82,15 @@ impl Check {
         }
         Ok(Verdict::Positive)
     }
+}
+
+/// What was said of a case, before anyone knows whether it is so.
+fn line(examined: &Examined) -> String {
+    let verdict = format!("{:?}", examined.diagnosis.verdict).to_lowercase();
+    let first = examined.diagnosis.causes.first().map_or_else(String::new, |cause| {
+        format!("; likeliest {} {} {:.2}", cause.effect.name, cause.scope, cause.probability)
+    });
+    format!("{} in {:.1} s: {verdict}{first}", examined.case, examined.seconds)
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

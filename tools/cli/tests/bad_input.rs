@@ -123,3 +123,19 @@ fn a_dbc_without_a_frame_is_named_with_the_frame() {
     let talk = refusal(&["replay", &log, "--dbc", &dbc]);
     assert!(talk.contains("lacking.dbc: no message `PosFront`"), "{talk}");
 }
+
+#[test]
+fn a_misspelt_answer_is_named_before_anything_is_diagnosed() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = folder.path().join("set");
+    fs::create_dir_all(set.join("one")).unwrap();
+    fs::create_dir(folder.path().join("answers")).unwrap();
+    fs::write(set.join("one/about.toml"), "").unwrap();
+    let answer = "case = \"one\"\nkind = \"single\"\n[[truth]]\neffect = \"ArmDealy\"\n";
+    file(&folder, "answers/one.toml", answer);
+    let talk = refusal(&["gap", "check", "--set", set.to_str().unwrap()]);
+    assert!(talk.contains("one.toml:4: `ArmDealy` is no effect"), "{talk}");
+    assert!(talk.contains("did you mean `arm-delay`?"), "{talk}");
+    let talk = refusal(&["gap", "check", "--set", "no/such"]);
+    assert!(talk.contains("no/such: cannot read"), "{talk}");
+}

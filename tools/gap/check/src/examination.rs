@@ -63,13 +63,17 @@ impl Examination {
     /// changed an answer after having seen a diagnosis.
     ///
     /// # Errors
-    /// [`CheckError::Read`].
+    /// [`CheckError::Read`]; [`CheckError::Answer`] for what is no answer, or that of another case: it
+    /// is better said now than after hours of diagnosis.
     pub fn sealed(sources: Vec<Source>, seed: u64) -> Result<Self, CheckError> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(1);
         let mut salt = [0; 32];
         random.fill_bytes(&mut salt);
         let texts = texts(&sources)?;
+        for (source, text) in sources.iter().zip(&texts) {
+            truth(source, text)?;
+        }
         let seal = Seal::on(&salt, texts.iter().map(String::as_str));
         Ok(Self { sources, salt, seal })
     }
@@ -119,27 +123,29 @@ impl Examination {
     /// Reads the answers again and opens the seal.
     ///
     /// # Errors
-    /// [`CheckError::SealBroken`] if they are not those that were sealed; [`CheckError::Answer`] for
-    /// what is no answer, or that of another case.
+    /// [`CheckError::SealBroken`] if they are not those that were sealed.
     pub fn open(&self, examined: Vec<Examined>) -> Result<Vec<Judged>, CheckError> {
         let texts = texts(&self.sources)?;
         if !self.seal.holds(&self.salt, texts.iter().map(String::as_str)) {
             return Err(CheckError::SealBroken { seal: self.seal.to_string() });
         }
         let judge = |((source, text), examined): ((&Source, &String), Examined)| {
-            let path = source.answer_path();
-            let truth = Truth::parse(text, &path)?;
-            if truth.case != examined.case {
-                let problem = format!(
-                    "case = \"{}\" is the answer of another case than {}; give each its own",
-                    truth.case, examined.case
-                );
-                return Err(CheckError::Answer { path, line: 1, problem });
-            }
-            Ok(Judged { examined, truth })
+            Ok(Judged { truth: truth(source, text)?, examined })
         };
         self.sources.iter().zip(&texts).zip(examined).map(judge).collect()
     }
+}
+
+/// The truth about a case, which must be about that case.
+fn truth(source: &Source, text: &str) -> Result<Truth, CheckError> {
+    let (path, case) = (source.answer_path(), source.name());
+    let truth = Truth::parse(text, &path)?;
+    if truth.case == case {
+        return Ok(truth);
+    }
+    let problem =
+        format!("case = \"{}\" is not the answer of {case}; give each its own", truth.case);
+    Err(CheckError::Answer { path, line: 1, problem })
 }
 
 fn texts(sources: &[Source]) -> Result<Vec<String>, CheckError> {
@@ -181,5 +187,9 @@ mod tests {
         assert!(error.contains(&sealed.seal().to_string()), "{error}");
         fs::write(&answer, "case = \"one\"\nkind = \"null\"\n").unwrap();
         assert!(sealed.open(Vec::new()).is_ok());
+        fs::write(&answer, "case = \"two\"\nkind = \"null\"\n").unwrap();
+        let source = Source::Folder { folder: folder.path().join("one"), answer };
+        let error = Examination::sealed(vec![source], 1).err().unwrap().to_string();
+        assert!(error.contains("case = \"two\" is not the answer of one"), "{error}");
     }
 }

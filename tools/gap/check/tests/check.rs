@@ -8,9 +8,9 @@ use xt28_gap_check::{Examination, Options, Report, Source, Truth};
 use xt28_gap_plants::{Case, Cause, Manoeuvre, Scope};
 
 /// Cases of the fixed set and the seed that they are drawn from. What they are has nothing to do with
-/// how they come out: it is the first seed there is.
-const CASES: usize = 8;
-const SEED: u64 = 0;
+/// how they come out: it is the seed that `xt28 gap check` has by itself.
+const CASES: usize = 6;
+const SEED: u64 = 1;
 
 fn report(sources: Vec<Source>, options: Options) -> Report {
     let examination = Examination::sealed(sources, SEED).unwrap();

@@ -9,7 +9,7 @@ use crate::wires::{Wire, Wires};
 use crate::{EmulatorConfig, ecu_effects};
 
 /// Both ECUs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Ecus {
     Paper(Box<(ArmEcu, DriveEcu)>),
     Firmware2016(Box<(ArmEcu2016, DriveEcu2016)>),
@@ -100,7 +100,7 @@ pub(crate) struct Pins {
 }
 
 /// What both put out in a tick.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Outputs {
     pub(crate) arm: ArmOutputs,
     pub(crate) drive: DriveOutputs,

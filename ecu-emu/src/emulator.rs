@@ -7,7 +7,10 @@ use xt28_dbc::{Frame, Outbox};
 use xt28_ecus::Profile;
 use xt28_ecus::firmware_2016::Quirks;
 use xt28_machine::{Machine, PerWheel, SimTime};
-use xt28_sim::{Effects, GnssReceiver, Imu, Plant, STEP, Sensors, Solver, Terrain, VehicleState};
+use xt28_sim::{
+    Actuation, Effects, GnssReceiver, Held, Imu, STEP, Sensors, Solver, Terrain, Track,
+    VehicleState,
+};
 use xt28_ubx::Geodetic;
 
 use crate::acquisition::Acquisition;
@@ -96,22 +99,31 @@ pub struct Emulator {
     gnss: GnssReceiver,
     receiver: Receiver,
     gnss_bytes: Vec<u8>,
-    plant: Box<dyn Plant + Send>,
+    plant: Box<dyn Track + Send>,
 }
 
 impl Emulator {
     /// A machine that has stood for 5 s, its arms set to their strokes by hand.
     #[must_use]
     pub fn new(config: &EmulatorConfig) -> Self {
+        let mut emulator = Self::set_down(config);
+        for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
+            let engine_rpm = emulator.engine.speed_rpm();
+            let setting = wiring::setting(config, emulator.plant.state(), engine_rpm);
+            emulator.plant.step(&setting);
+        }
+        emulator
+    }
+
+    /// A machine just set down, its strokes as configured and its springs not yet settled: for one that
+    /// is then led along a measurement by [`Self::track`].
+    #[must_use]
+    pub fn set_down(config: &EmulatorConfig) -> Self {
         let machine = &config.machine;
         let effects = &config.effects;
         let (terrain, stroke_m) = (&config.terrain, config.stroke_m);
-        let mut plant = config.solver.vehicle(machine, effects, terrain, stroke_m, STEP);
+        let plant = config.solver.vehicle(machine, effects, terrain, stroke_m, STEP);
         let engine = Engine::new(machine.drive.engine_speed_rpm);
-        for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
-            let setting = wiring::setting(config, plant.state(), engine.speed_rpm());
-            plant.step(&setting);
-        }
         Self {
             profile: config.profile,
             ecus: Ecus::new(config),
@@ -146,6 +158,46 @@ impl Emulator {
     /// One tick at `now`: sensors are read, both ECUs run, the plant moves on to the next tick.
     /// Frames for the bus are added to `out`.
     pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
+        let actuation = self.control(now, out);
+        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
+            self.plant.step(&actuation);
+        }
+    }
+
+    /// One tick at `now` along a measurement: the plant is where `measured` has it, the ECUs read it
+    /// there and go on, and what no sensor shows of the plant goes on with them. [`Self::tick`] then
+    /// sets out from there.
+    pub fn track(&mut self, now: SimTime, measured: &VehicleState, out: &mut Outbox) {
+        let actuation = self.control(now, out);
+        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
+            self.plant.track(measured, &actuation);
+        }
+    }
+
+    /// Puts the plant where `measured` has it, between two ticks.
+    pub fn place(&mut self, measured: &VehicleState) {
+        let Outputs { arm, drive } = &self.out;
+        let actuation = wiring::actuation(arm, drive, self.engine.speed_rpm());
+        self.plant.place(measured, &actuation);
+    }
+
+    /// One tick at `now` in which the blocks of `held` put out what `measured` says.
+    pub fn tick_held(
+        &mut self,
+        now: SimTime,
+        measured: &VehicleState,
+        held: Held,
+        out: &mut Outbox,
+    ) {
+        let actuation = self.control(now, out);
+        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
+            self.plant.hold(measured, &actuation, held);
+            self.plant.step(&actuation);
+        }
+    }
+
+    /// The ECUs' part of a tick: sensors are read, both run; what they then ask of the plant.
+    fn control(&mut self, now: SimTime, out: &mut Outbox) -> Actuation {
         while let Some((at, frame)) = self.inbox.take_due(now) {
             self.ecus.on_bus(at, &frame);
         }
@@ -172,10 +224,7 @@ impl Emulator {
         }
         self.engine.step(TICK.as_secs_f64());
         let Outputs { arm, drive } = &self.out;
-        let actuation = wiring::actuation(arm, drive, self.engine.speed_rpm());
-        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
-            self.plant.step(&actuation);
-        }
+        wiring::actuation(arm, drive, self.engine.speed_rpm())
     }
 
     /// What the wires of their own bring the ECUs, and on the display's what was sent in the last
@@ -236,5 +285,31 @@ impl Emulator {
     #[must_use]
     pub fn truth(&self) -> &VehicleState {
         self.plant.state()
+    }
+}
+
+/// A snapshot: ticked alike, it goes on bit for bit like the original.
+impl Clone for Emulator {
+    fn clone(&self) -> Self {
+        Self {
+            profile: self.profile,
+            ecus: self.ecus.clone(),
+            out: self.out.clone(),
+            wires: self.wires.clone(),
+            inbox: self.inbox.clone(),
+            operator: self.operator.clone(),
+            pads_due: self.pads_due,
+            engine: self.engine.clone(),
+            engine_speaker: self.engine_speaker.clone(),
+            sensors: self.sensors.clone(),
+            sensor_faults: self.sensor_faults.clone(),
+            acquisition: self.acquisition.clone(),
+            supplies: self.supplies.clone(),
+            imu: self.imu,
+            gnss: self.gnss.clone(),
+            receiver: self.receiver.clone(),
+            gnss_bytes: self.gnss_bytes.clone(),
+            plant: self.plant.snapshot(),
+        }
     }
 }

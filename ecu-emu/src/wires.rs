@@ -59,7 +59,7 @@ impl FromStr for Wire {
 }
 
 /// Frames of one tick, a box a wire. Keeps its memory, so that a tick allocates nothing.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Wires {
     boxes: [Outbox; Wire::ALL.len()],
 }

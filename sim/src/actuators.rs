@@ -7,7 +7,7 @@ use crate::blocks::{
     FlowSharing, Steering, SteeringState,
 };
 use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion};
-use crate::{Actuation, Effects, REFERENCE_STROKE_M, VehicleState};
+use crate::{Actuation, Effects, Held, REFERENCE_STROKE_M, VehicleState};
 
 /// Below this wheel speed the rolling drag fades, rad/s: dry friction without a jump (assumed).
 const DRAG_FADE_RAD_S: f64 = 0.05;
@@ -92,6 +92,47 @@ impl Actuators {
         }
         let input = drive_input(actuation, motion);
         self.shaft = self.drive.resumed(&input, &measured.wheel_torque_nm, dt_s);
+    }
+
+    /// Gives the held blocks the oil, and the drive the torque, with which they show what is measured.
+    /// Spools, delays and seals stay as they are.
+    pub(crate) fn hold(
+        &mut self,
+        measured: &VehicleState,
+        actuation: &Actuation,
+        motion: &Motion,
+        held: Held,
+    ) {
+        if held.arms {
+            for wheel in Wheel::ALL {
+                let cylinder = CylinderMotion {
+                    stroke_m: measured.stroke_m[wheel],
+                    stroke_rate_m_s: measured.stroke_rate_m_s[wheel],
+                };
+                let load_n = measured.cylinder_force_n[wheel];
+                self.arms[wheel].refill(&mut self.arm_states[wheel], load_n, &cylinder);
+            }
+        }
+        if held.joints {
+            for (i, joint) in self.joints.iter_mut().enumerate() {
+                let (angle_rad, rate_rad_s) = (measured.joint_rad[i], measured.joint_rate_rad_s[i]);
+                self.steering.refill(joint, HingeMotion { angle_rad, rate_rad_s });
+            }
+        }
+        if held.drive {
+            let input = drive_input(actuation, motion);
+            let (speed, torque) = (&measured.wheel_speed_rad_s, &measured.wheel_torque_nm);
+            self.drive.reload(&mut self.shaft, &input, speed, torque);
+        }
+    }
+
+    /// The hinge of an arm whose cylinder moves so.
+    pub(crate) fn arm_motion(&self, stroke_m: f64, stroke_rate_m_s: f64) -> HingeMotion {
+        let at_rad = self.linkage.at_stroke(stroke_m).angle_rad;
+        HingeMotion {
+            angle_rad: at_rad - self.reference_rad,
+            rate_rad_s: stroke_rate_m_s / self.linkage.lever_m(at_rad),
+        }
     }
 
     /// Steps every block over `dt_s` s; what the drive does is noted in `state`.

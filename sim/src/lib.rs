@@ -30,7 +30,7 @@ pub use effects::Effects;
 pub use parts::{
     ArmPart, Brush, HullBall, Part, Parts, REFERENCE_STROKE_M, RollHinge, Tilt, TyrePart,
 };
-pub use plant::{Plant, STEP};
+pub use plant::{Held, Plant, STEP, Track};
 pub use rapier::{RapierBodies, Tread};
 pub use reduced::ReducedBodies;
 pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample, Readings, Sensors};

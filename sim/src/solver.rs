@@ -6,7 +6,7 @@ use core::time::Duration;
 
 use xt28_machine::{Machine, PerWheel};
 
-use crate::{Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
+use crate::{Effects, RapierBodies, ReducedBodies, Terrain, Track, Vehicle};
 
 /// A solver of the vehicle's rigid bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl Solver {
         terrain: &Terrain,
         stroke_m: PerWheel<f64>,
         step: Duration,
-    ) -> Box<dyn Plant + Send> {
+    ) -> Box<dyn Track + Send> {
         match self {
             Self::Rapier => {
                 let vehicle =

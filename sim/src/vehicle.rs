@@ -1,6 +1,7 @@
 //! The whole vehicle: the actuators' blocks joined to a solver of the rigid bodies.
 
 mod resume;
+mod track;
 
 use core::time::Duration;
 

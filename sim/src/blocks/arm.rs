@@ -72,6 +72,11 @@ impl Arm {
         }
     }
 
+    /// Lets the oil carry `load_n` in this motion; valve and seals stay as they are.
+    pub(crate) fn refill(&self, state: &mut ArmState, load_n: f64, motion: &CylinderMotion) {
+        state.cylinder.rest_m = self.cylinder.carrying(load_n, motion).rest_m;
+    }
+
     /// First half of a step: moves the spool; gives the extending speed that it asks for, m/s.
     pub fn open(&self, state: &mut ArmState, input: &ArmInput, dt_s: f64) -> f64 {
         let spool = self.valve.step(&mut state.valve, input.command, dt_s);

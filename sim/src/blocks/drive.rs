@@ -20,6 +20,9 @@ const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
 const SLIP_FREE_RAD_S: f64 = 4.0 * core::f64::consts::TAU / 60.0;
 /// Torque beyond that, Nm s (assumed).
 const SLIP_GAIN_NMS: f64 = 6_000.0;
+/// How much harder than by the circuit's own gain a held drive draws the wheels to their speed: within
+/// some 30 ms, and stable at steps of 10 ms.
+const HOLDING_GAIN: f64 = 4.0;
 
 /// Parameters of the transmission.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +125,27 @@ impl Drive {
             power_w,
             mean_torque_nm: (held_nm[0] + held_nm[1]) / 2.0,
         }
+    }
+
+    /// Lets the integral explain the torques measured at the speeds measured, as if they had just come
+    /// about, and draw the wheels to those speeds; throttle and engine stay as they are.
+    pub(crate) fn reload(
+        &self,
+        state: &mut DriveState,
+        input: &DriveInput,
+        speed_rad_s: &PerWheel<f64>,
+        torque_nm: &PerWheel<f64>,
+    ) {
+        let measured = DriveInput { wheel_speed_rad_s: *speed_rad_s, ..*input };
+        let held_nm = [0, 1].map(|c| {
+            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
+            let target = state.target_rad_s[c].value();
+            let (wanted, is) = (self.mean_rad_s(c, &measured), self.mean_rad_s(c, input));
+            circuit_nm - self.circuit_gain_nms * (target - wanted)
+                + HOLDING_GAIN * self.circuit_gain_nms * (wanted - is)
+        });
+        let max = self.wheel_torque_max_nm;
+        state.mean_torque_nm = (0.5 * (held_nm[0] + held_nm[1])).clamp(-max, max);
     }
 
     /// Torques and pressures now; the state goes on by `dt_s` s.

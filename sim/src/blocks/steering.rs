@@ -77,6 +77,14 @@ impl Steering {
         }
     }
 
+    /// Lets the rest lead this motion by its damping, the oil be no further from it than the play
+    /// allows; the valve stays as it is.
+    pub(crate) fn refill(&self, state: &mut SteeringState, joint: HingeMotion) {
+        let half_rad = 0.5 * self.effects.backlash.width_rad;
+        state.rest_rad = joint.angle_rad + joint.rate_rad_s * self.damping_nms / self.stiffness_nm;
+        state.oil_rad = state.oil_rad.clamp(state.rest_rad - half_rad, state.rest_rad + half_rad);
+    }
+
     /// First half of a step: moves the spool; gives the rate that it asks of the joint, rad/s.
     pub fn open(&self, state: &mut SteeringState, opening: f64, dt_s: f64) -> f64 {
         let e = &self.effects;

@@ -16,6 +16,12 @@ impl Lag {
         Self { output: value }
     }
 
+    /// Output now.
+    #[must_use]
+    pub const fn value(self) -> f64 {
+        self.output
+    }
+
     /// Output after `dt_s` s more of `input`.
     pub fn step(&mut self, input: f64, time_constant_s: f64, dt_s: f64) -> f64 {
         self.output = if time_constant_s <= 0.0 {

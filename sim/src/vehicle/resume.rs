@@ -6,7 +6,7 @@ use xt28_machine::{Machine, PerWheel};
 
 use super::{Vehicle, cross};
 use crate::bodies::{HingeMotion, Motion, Placed};
-use crate::{Actuation, Effects, Parts, Terrain, VehicleState};
+use crate::{Actuation, Effects, Terrain, VehicleState};
 
 impl<B: Placed> Vehicle<B> {
     /// The machine with `effects` on `terrain`, stepped every `step`, where `measured` has it while
@@ -36,8 +36,7 @@ impl<B: Placed> Vehicle<B> {
         warm: Duration,
     ) -> Self {
         let mut vehicle = Self::with(machine, effects, terrain, measured.stroke_m, step);
-        let parts = Parts::new(machine, effects);
-        let motion = vehicle.motion_of(&parts, measured);
+        let motion = vehicle.motion_of(measured);
         vehicle.actuators.resume(measured, actuation, &motion, vehicle.step_s);
         let steps = (warm.as_secs_f64() / vehicle.step_s).round();
         let mut ahead = vehicle.actuators.clone();
@@ -57,7 +56,7 @@ impl<B: Placed> Vehicle<B> {
     }
 
     /// The rigid bodies' motion that shows as this state.
-    fn motion_of(&self, parts: &Parts, s: &VehicleState) -> Motion {
+    pub(super) fn motion_of(&self, s: &VehicleState) -> Motion {
         let [(sp, cp), (sr, cr), (sy, cy)] = [s.pitch_rad, s.roll_rad, s.yaw_rad].map(f64::sin_cos);
         // Yaw, then nose up, then right side high; in the level world.
         let level = [
@@ -76,10 +75,7 @@ impl<B: Placed> Vehicle<B> {
         let ground = |v: [f64; 3]| self.tilt.map_or(v, |tilt| tilt.to_ground(v));
         Motion {
             arm: PerWheel::from_fn(|w| {
-                let angle_rad = parts.arm_angle_rad(s.stroke_m[w]);
-                let at = parts.linkage.at_stroke(s.stroke_m[w]).angle_rad;
-                let rate_rad_s = s.stroke_rate_m_s[w] / parts.linkage.lever_m(at);
-                HingeMotion { angle_rad, rate_rad_s }
+                self.actuators.arm_motion(s.stroke_m[w], s.stroke_rate_m_s[w])
             }),
             joint: core::array::from_fn(|i| HingeMotion {
                 angle_rad: s.joint_rad[i],

@@ -4,6 +4,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
 use super::candidates::{Candidate, Docket};
+use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
 use super::signals::Signals;
@@ -29,7 +30,23 @@ impl Inquiry {
     /// The answer. `progress` hears of every step, from any thread.
     #[must_use]
     pub fn diagnose(&self, progress: &(dyn Fn(Progress) + Sync)) -> Diagnosis {
-        judge(self, &self.findings(progress))
+        let mut diagnosis = judge(self, &self.findings(progress));
+        self.say_how_far(&mut diagnosis, progress);
+        diagnosis
+    }
+
+    /// The whole machine's word, where it is asked for; logs that cannot be foretold are noted.
+    fn say_how_far(&self, diagnosis: &mut Diagnosis, progress: &(dyn Fn(Progress) + Sync)) {
+        if !self.how_far {
+            return;
+        }
+        let tell = |stage, done| progress(Progress { stage, done: 0.75 + 0.25 * done });
+        match HowFar::new(self) {
+            Ok(how_far) => how_far.complete(diagnosis, &tell),
+            Err(error) => {
+                diagnosis.notes.push(format!("How far the gap shrinks is not known: {error}."));
+            }
+        }
     }
 
     /// What the logs say of every hypothesis, before it is judged.

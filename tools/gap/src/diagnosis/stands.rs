@@ -1,7 +1,8 @@
 //! The causes that a diagnosis stands by, and the overlay that puts them into the simulator.
 
-use xt28_sim::effects::{Entry, Overlay};
+use xt28_sim::effects::Overlay;
 
+use super::how_far::overlay;
 use super::verdict::{Cause, Diagnosis, Verdict};
 
 /// A cause at or below this probability is only listed.
@@ -19,21 +20,7 @@ impl Diagnosis {
     /// Those causes at their best values, for the simulator to load.
     #[must_use]
     pub fn overlay(&self) -> Overlay {
-        let entry = |cause: &Cause| Entry {
-            effect: cause.effect,
-            scope: cause.scope,
-            severity: 1.0,
-            values: cause
-                .parameters
-                .iter()
-                .filter_map(|estimate| {
-                    let parameter = cause.effect.parameter(estimate.name)?;
-                    let [low, high] = parameter.range;
-                    Some((parameter, estimate.value[0].clamp(low, high)))
-                })
-                .collect(),
-        };
-        Overlay { entries: self.stood_by().map(entry).collect() }
+        overlay(self.stood_by())
     }
 }
 

@@ -1,0 +1,64 @@
+//! A tenth of a second ahead: blocks on measured inputs, set anew at every sample.
+//!
+//! Of the whole machine a tenth of a second says little: setting it down on measured states moves it by
+//! more than an effect does in that time. On measured inputs every block is set anew by itself. What a
+//! block adds up (a stroke, an angle, a speed) is judged by what its error grows by from one sample to
+//! the next; what it says at once (an opening, an attitude, a weight) by its error.
+
+use xt28_machine::Machine;
+use xt28_sim::Effects;
+
+use super::squares::{BLOCK, Squares};
+use crate::diagnosis::generator::{Generator, Residual, Signal};
+use crate::diagnosis::signals::Signals;
+
+/// What every block's signal lacks a tenth of a second ahead, in floors; `NaN` where nothing can be said.
+pub(super) type Ahead = Vec<(Signal, Vec<f64>)>;
+
+/// Whether a block adds this signal up over time.
+const fn adds_up(signal: Signal) -> bool {
+    matches!(signal, Signal::Stroke | Signal::JointAngle | Signal::DriveSpeed)
+}
+
+/// What each block's signal lacks on one run.
+pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> Ahead {
+    let of = |residual: Residual| {
+        let Residual { signal, mut values, .. } = residual;
+        if adds_up(signal) {
+            for k in (1..values.len()).rev() {
+                values[k] -= values[k - 1];
+            }
+            if let Some(first) = values.first_mut() {
+                *first = f64::NAN;
+            }
+        }
+        (signal, values)
+    };
+    let all = Generator::all().into_iter();
+    all.flat_map(|generator| generator.residuals(s, machine, effects)).map(of).collect()
+}
+
+/// Squares of several residuals, the wheels' speeds taken together. Two that differ in what can be
+/// judged are made alike by `mask`, whose own gaps count.
+#[allow(clippy::ptr_arg)] // The name says more than a slice of pairs.
+pub(super) fn squares(ahead: &Ahead, mask: &Ahead) -> Vec<Squares> {
+    let kind = |signal: &Signal| match signal {
+        Signal::WheelSpeed(_) => Signal::WheelSpeed(xt28_machine::Wheel::Fr),
+        other => *other,
+    };
+    let mut kinds: Vec<Signal> = ahead.iter().map(|(signal, _)| kind(signal)).collect();
+    kinds.sort();
+    kinds.dedup();
+    let len = ahead.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+    let mut blocks = vec![Squares::new(kinds.len()); len.div_ceil(BLOCK)];
+    for ((signal, values), (_, judged)) in ahead.iter().zip(mask) {
+        let k = kinds.binary_search(&kind(signal)).expect("every kind is listed");
+        for (i, (value, judged)) in values.iter().zip(judged).enumerate() {
+            if judged.is_finite() {
+                // What the other cannot judge here is no worse than what it was to be set against.
+                blocks[i / BLOCK].add(k, if value.is_finite() { *value } else { *judged });
+            }
+        }
+    }
+    blocks
+}

@@ -1,0 +1,330 @@
+//! Causes fitted anew on the whole machine, together with what differs from machine to machine.
+//!
+//! Least squares over the fit runs, 5 s ahead of measured states, by Levenberg and Marquardt on finite
+//! differences. Errors are in floors, weighted for their correlation in time, and grow only linearly
+//! beyond a few floors: a wheel that slips once must not decide. The machine's own tolerances
+//! (neighbours) give way within their priors, so that a cause need not explain a heavier frame; they
+//! are near enough linear for slopes taken once. What comes out are the causes alone: that is what an
+//! overlay can hold, and what is judged.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+use rayon::prelude::*;
+use xt28_machine::Machine;
+use xt28_sim::effects::{Parameter, Scope};
+use xt28_sim::{Effects, Held};
+
+use super::HowFar;
+use super::course::{Horizon, WIDTH, floors};
+use super::squares::{self, BLOCK};
+use super::twin::Course;
+use crate::diagnosis::knob::{Knob, TOLERANCES};
+use crate::diagnosis::verdict::{Cause, Estimate, Shrink};
+
+/// Tolerances of the machine that may give way beside a cause.
+const NEIGHBOURS: [&str; 5] =
+    ["front mass", "middle mass", "rear mass", "lock stiffness", "drive time constant"];
+/// Errors beyond this count linearly, floors.
+const ROBUST: f64 = 5.0;
+/// Time after which errors of the whole machine are drawn anew, in samples: 2 s.
+const CORRELATED: f64 = 20.0;
+/// Rounds of slopes at most.
+const ROUNDS: usize = 4;
+/// A round that gains less than this share of the cost is the last.
+const ENOUGH: f64 = 2.0e-3;
+/// Half of a 90 % interval in standard deviations.
+const NINETY: f64 = 1.645;
+
+/// Causes fitted anew.
+#[derive(Clone, Debug)]
+pub struct Refit {
+    /// What is believed, with the causes at their best.
+    pub effects: Effects,
+    /// Parameters with their intervals, cause by cause.
+    pub estimates: Vec<Vec<Estimate>>,
+    /// How far they shrink the gap on the judged runs.
+    pub shrink: Shrink,
+    /// Gap on the fit runs over 5 s at the start and at the end, floors; never larger at the end.
+    pub fit_gap: [f64; 2],
+}
+
+/// One parameter of one cause.
+#[derive(Clone, Copy)]
+struct Turn {
+    cause: usize,
+    scope: Scope,
+    parameter: &'static Parameter,
+}
+
+impl HowFar {
+    /// Fits the parameters of `causes` together, from the values they have.
+    #[must_use]
+    pub fn refit(&self, causes: &[Cause]) -> Refit {
+        let turns = turns(causes);
+        let start: Vec<f64> = turns
+            .iter()
+            .map(|turn| {
+                let of = |e: &&Estimate| e.name == turn.parameter.name;
+                let estimate = causes[turn.cause].parameters.iter().find(of);
+                let [low, high] = turn.parameter.range;
+                estimate.map_or(turn.parameter.neutral, |e| e.value[0]).clamp(low, high)
+            })
+            .collect();
+        let (at, sigma) = self.descend(&turns, &start);
+        let fit_gap = |values: &[f64]| {
+            let effects = self.turned(&turns, values);
+            let held = Held::default();
+            squares::gap(&self.squares(&effects, Horizon::FiveSeconds, held, |k| self.fits(k)))
+        };
+        let (before, after) = rayon::join(|| fit_gap(&start), || fit_gap(&at));
+        let (at, after) = if after <= before { (at, after) } else { (start, before) };
+        let effects = self.turned(&turns, &at);
+        let mut estimates = vec![Vec::new(); causes.len()];
+        for ((turn, value), sigma) in turns.iter().zip(&at).zip(&sigma) {
+            let [low, high] = turn.parameter.range;
+            let end = |sign: f64| (value + sign * NINETY * sigma).clamp(low, high);
+            let value = [*value, end(-1.0), end(1.0)];
+            estimates[turn.cause].push(Estimate { name: turn.parameter.name, value });
+        }
+        Refit { shrink: self.shrink(&effects), effects, estimates, fit_gap: [before, after] }
+    }
+
+    /// What `effects` leave on the fit runs over 5 s, neighbours at their best: sum of squares in
+    /// floors, each error counted as often as it is drawn anew. Differences of 2 are worth naming.
+    #[must_use]
+    pub fn cost(&self, effects: &Effects) -> f64 {
+        let errors = self.errors(&self.machine, effects);
+        let (slopes, _) = self.neighbours(effects, &errors);
+        let (squares, gradient, matrix) = normal(&slopes, &errors);
+        let matrix = matrix + DMatrix::identity(slopes.len(), slopes.len());
+        let step = Cholesky::new(matrix).expect("a sum of squares and the identity");
+        squares - gradient.dot(&step.solve(&gradient))
+    }
+
+    /// Whether a run is fitted: those marked so, or all where none is.
+    pub(super) fn fits(&self, run: usize) -> bool {
+        self.fit[run] || self.fit.iter().all(|fit| !*fit)
+    }
+
+    fn turned(&self, turns: &[Turn], values: &[f64]) -> Effects {
+        let mut effects = self.believed.clone();
+        for (turn, value) in turns.iter().zip(values) {
+            turn.parameter.set(&mut effects, turn.scope, *value);
+        }
+        effects
+    }
+
+    /// Weighted errors of the fit runs, made robust; one number a sample and channel.
+    fn errors(&self, machine: &Machine, effects: &Effects) -> Vec<f64> {
+        let runs: Vec<&Course> = self
+            .courses
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| self.fits(*k))
+            .map(|(_, course)| course)
+            .collect();
+        runs.par_iter().flat_map_iter(|course| errors(course, machine, effects)).collect()
+    }
+
+    /// Slopes of the errors by each neighbour, a tolerance each.
+    fn neighbours(&self, effects: &Effects, errors: &[f64]) -> (Vec<Vec<f64>>, Vec<Knob>) {
+        let knobs: Vec<Knob> = TOLERANCES
+            .iter()
+            .filter(|tolerance| NEIGHBOURS.contains(&tolerance.name))
+            .map(Knob::Machine)
+            .collect();
+        let slope = |knob: &Knob| {
+            let (mut machine, mut effects) = (self.machine.clone(), effects.clone());
+            knob.set(&mut machine, &mut effects, knob.neutral() + knob.tolerance());
+            difference(&self.errors(&machine, &effects), errors, 1.0)
+        };
+        (knobs.par_iter().map(slope).collect(), knobs)
+    }
+
+    /// Best values, and the standard deviation of each.
+    fn descend(&self, turns: &[Turn], start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let effects_at = |values: &[f64]| self.turned(turns, values);
+        let mut at = start.to_vec();
+        let mut errors = self.errors(&self.machine, &effects_at(&at));
+        let (beside, knobs) = self.neighbours(&effects_at(&at), &errors);
+        // Neighbours as they were believed when `errors` were made, tolerances.
+        let mut gave = DVector::<f64>::zeros(knobs.len());
+        let mut damping = 1.0e-3;
+        let mut sigma = vec![0.0; turns.len()];
+        for _ in 0..ROUNDS {
+            let slopes = self.slopes(turns, &at, &gave, &knobs, &errors);
+            let all: Vec<Vec<f64>> = slopes.into_iter().chain(beside.iter().cloned()).collect();
+            let (squares, mut gradient, mut matrix) = normal(&all, &errors);
+            for (k, gave) in gave.iter().enumerate() {
+                gradient[turns.len() + k] += gave;
+                matrix[(turns.len() + k, turns.len() + k)] += 1.0;
+            }
+            let cost = squares + gave.norm_squared();
+            sigma = deviations(&matrix, turns, &all, &errors);
+            let mut gained = 0.0;
+            for _ in 0..3 {
+                let mut damped = matrix.clone();
+                for k in 0..damped.nrows() {
+                    damped[(k, k)] += damping * matrix[(k, k)].max(1.0e-9);
+                }
+                let Some(factor) = Cholesky::new(damped) else { break };
+                let step = -factor.solve(&gradient);
+                let moved: Vec<f64> = turns.iter().zip(&at).zip(step.iter()).map(move_by).collect();
+                let giving = &gave + step.rows(turns.len(), knobs.len());
+                let (machine, effects) = self.given(&knobs, &giving, effects_at(&moved));
+                let trial = self.errors(&machine, &effects);
+                let after = sum(&trial) + giving.norm_squared();
+                if after < cost {
+                    gained = 1.0 - after / cost;
+                    (at, gave, errors) = (moved, giving, trial);
+                    damping *= 0.1;
+                    break;
+                }
+                damping = (damping * 30.0_f64).max(0.03);
+            }
+            if gained < ENOUGH {
+                break;
+            }
+        }
+        (at, sigma)
+    }
+
+    /// The machine with neighbours that gave way.
+    fn given(
+        &self,
+        knobs: &[Knob],
+        gave: &DVector<f64>,
+        mut effects: Effects,
+    ) -> (Machine, Effects) {
+        let mut machine = self.machine.clone();
+        for (knob, gave) in knobs.iter().zip(gave.iter()) {
+            let value = knob.neutral() + gave * knob.tolerance();
+            knob.set(&mut machine, &mut effects, value);
+        }
+        (machine, effects)
+    }
+
+    /// Slopes of the errors by each parameter, in tolerances.
+    fn slopes(
+        &self,
+        turns: &[Turn],
+        at: &[f64],
+        gave: &DVector<f64>,
+        knobs: &[Knob],
+        errors: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let slope = |k: usize| {
+            let parameter = turns[k].parameter;
+            let far = (at[k] - parameter.neutral).abs();
+            let nudge = (0.3 * parameter.tolerance).max(0.04 * far);
+            let room = parameter.range[1] - at[k];
+            let nudge = if room >= nudge { nudge } else { -nudge };
+            let mut moved = at.to_vec();
+            moved[k] += nudge;
+            let (machine, effects) = self.given(knobs, gave, self.turned(turns, &moved));
+            difference(&self.errors(&machine, &effects), errors, nudge / parameter.tolerance)
+        };
+        (0..turns.len()).into_par_iter().map(slope).collect()
+    }
+}
+
+fn turns(causes: &[Cause]) -> Vec<Turn> {
+    let of = |(cause, c): (usize, &Cause)| {
+        let scope = c.scope;
+        let turn = move |parameter| Turn { cause, scope, parameter };
+        c.effect.parameters.iter().map(turn).collect::<Vec<_>>()
+    };
+    causes.iter().enumerate().flat_map(of).collect()
+}
+
+/// A parameter moved by a step in tolerances, within its range.
+fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
+    let [low, high] = turn.parameter.range;
+    (at + step * turn.parameter.tolerance).clamp(low, high)
+}
+
+/// Errors of one run.
+fn errors(course: &Course, machine: &Machine, effects: &Effects) -> Vec<f64> {
+    let floors = floors(Horizon::FiveSeconds);
+    let foretold = course.foretell(machine, effects, Horizon::FiveSeconds, Held::default());
+    let mut errors = Vec::new();
+    for stretch in &foretold {
+        for (measured, ours) in course.measured[stretch.from..].iter().zip(&stretch.rows) {
+            for c in 0..WIDTH {
+                let error = (ours[c] - measured[c]) / floors[c];
+                let error = if error.is_finite() { robust(error) } else { 0.0 };
+                errors.push(error / CORRELATED.sqrt());
+            }
+        }
+    }
+    errors
+}
+
+/// The error whose square is Huber's loss.
+fn robust(error: f64) -> f64 {
+    let size = error.abs();
+    if size <= ROBUST {
+        return error;
+    }
+    (2.0 * ROBUST * size - ROBUST * ROBUST).sqrt().copysign(error)
+}
+
+fn sum(errors: &[f64]) -> f64 {
+    errors.iter().map(|e| e * e).sum()
+}
+
+fn difference(moved: &[f64], errors: &[f64], by: f64) -> Vec<f64> {
+    moved.iter().zip(errors).map(|(m, e)| (m - e) / by).collect()
+}
+
+/// Squares, gradient and matrix of the normal equations.
+fn normal(slopes: &[Vec<f64>], errors: &[f64]) -> (f64, DVector<f64>, DMatrix<f64>) {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let n = slopes.len();
+    let gradient = DVector::from_fn(n, |k, _| dot(&slopes[k], errors));
+    let matrix = DMatrix::from_fn(n, n, |i, j| dot(&slopes[i], &slopes[j]));
+    (sum(errors), gradient, matrix)
+}
+
+/// Standard deviation of each parameter, tolerant of what is left: errors are alike within 5 s, on all
+/// channels at once, and independent beyond (the sandwich estimator, clusters of a segment each).
+fn deviations(
+    matrix: &DMatrix<f64>,
+    turns: &[Turn],
+    slopes: &[Vec<f64>],
+    errors: &[f64],
+) -> Vec<f64> {
+    let n = slopes.len();
+    let mut bread = matrix.clone();
+    // A parameter that these runs do not show is known to ten tolerances, no better.
+    for k in 0..turns.len() {
+        bread[(k, k)] += 0.01;
+    }
+    let Some(factor) = Cholesky::new(bread) else { return vec![0.0; turns.len()] };
+    let mut meat = DMatrix::<f64>::identity(n, n);
+    for (segment, errors) in errors.chunks(BLOCK * WIDTH).enumerate() {
+        let from = segment * BLOCK * WIDTH;
+        let pull = DVector::from_fn(n, |k, _| {
+            slopes[k][from..].iter().zip(errors).map(|(s, e)| s * e).sum::<f64>()
+        });
+        meat.ger(1.0, &pull, &pull, 1.0);
+    }
+    let inverse = factor.inverse();
+    let robust = &inverse * meat * &inverse;
+    let of = |(k, turn): (usize, &Turn)| {
+        robust[(k, k)].max(inverse[(k, k)]).max(0.0).sqrt() * turn.parameter.tolerance
+    };
+    turns.iter().enumerate().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_large_error_counts_linearly() {
+        assert_eq!(robust(-3.0), -3.0);
+        let square = |e: f64| robust(e).powi(2);
+        assert!((square(ROBUST) - 25.0).abs() < 1e-12);
+        assert!((square(101.0) - square(100.0) - 2.0 * ROBUST).abs() < 1e-9);
+    }
+}

@@ -22,9 +22,9 @@ mod tyres;
 mod values;
 
 pub use arms::{
-    AccumulatorGas, ArmDelay, ArmEffects, ArmGain, LeakageDrift, LoadDependentSpeed, LockDamping,
-    PumpFlowLimit, SealStiction, SpeedAsymmetry, UnsupportedSag, ValveDeadband, ValveGain,
-    ValveHysteresis, ValveLag,
+    AccumulatorGas, ArmDelay, ArmEffects, ArmGain, LOCK_STIFFNESS, LeakageDrift,
+    LoadDependentSpeed, LockDamping, LockStiffness, PumpFlowLimit, SealStiction, SpeedAsymmetry,
+    UnsupportedSag, ValveDeadband, ValveGain, ValveHysteresis, ValveLag,
 };
 pub use bus::{BusEffects, CommandJitter, FrameLoss};
 pub use catalogue::{CATALOGUE, find};

@@ -61,7 +61,7 @@ impl Cylinder {
     pub fn new(machine: &Machine, effects: &ArmEffects) -> Self {
         let (h, a) = (&machine.hydraulics, &machine.arms);
         Self {
-            lock: Lock::new(machine, &effects.gas),
+            lock: Lock::new(machine, effects),
             damping_n_s_m: h.lock_damping_n_s_m * effects.lock_damping.factor,
             stiction: effects.stiction,
             stroke_max_m: a.stroke_max_m,

@@ -3,7 +3,7 @@
 use xt28_machine::Machine;
 
 use super::Accumulator;
-use crate::effects::AccumulatorGas;
+use crate::effects::ArmEffects;
 
 /// Force of the oil against compression: how much further the valve has filled the cylinder than it
 /// is long.
@@ -17,8 +17,9 @@ pub struct Lock {
 impl Lock {
     /// The lock of one cylinder. Nominal: linear (paper 3.2).
     #[must_use]
-    pub fn new(machine: &Machine, gas: &AccumulatorGas) -> Self {
-        let stiffness_n_m = machine.hydraulics.lock_stiffness_n_m;
+    pub fn new(machine: &Machine, effects: &ArmEffects) -> Self {
+        let gas = &effects.gas;
+        let stiffness_n_m = machine.hydraulics.lock_stiffness_n_m * effects.lock_stiffness.factor;
         let reach_m = machine.arms.force_max_n / stiffness_n_m;
         let mut lock = Self { stiffness_n_m, gas: None, reach_m: [-reach_m, reach_m] };
         if gas.share != 0.0 {
@@ -75,9 +76,11 @@ impl Lock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{AccumulatorGas, LockStiffness};
 
     fn with_share(share: f64) -> Lock {
-        Lock::new(&Machine::xt28(), &AccumulatorGas { share, ..AccumulatorGas::default() })
+        let gas = AccumulatorGas { share, ..AccumulatorGas::default() };
+        Lock::new(&Machine::xt28(), &ArmEffects { gas, ..ArmEffects::default() })
     }
 
     #[test]
@@ -116,5 +119,13 @@ mod tests {
         let (nominal, little) = (with_share(0.0), with_share(1e-9));
         let (a, b) = (nominal.spring(0.03)[0], little.spring(0.03)[0]);
         assert!((a - b).abs() < 1e-3, "{a} {b}");
+    }
+    #[test]
+    fn a_stiffer_lock_gives_way_less() {
+        let lock_stiffness = LockStiffness { factor: 1.05 };
+        let stiff =
+            Lock::new(&Machine::xt28(), &ArmEffects { lock_stiffness, ..ArmEffects::default() });
+        let ratio = with_share(0.0).compression_m(55e3) / stiff.compression_m(55e3);
+        assert!((ratio - 1.05).abs() < 1e-12);
     }
 }

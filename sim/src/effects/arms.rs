@@ -6,6 +6,7 @@ pub(super) mod arm_gain;
 pub(super) mod leakage_drift;
 pub(super) mod load_dependent_speed;
 pub(super) mod lock_damping;
+pub(super) mod lock_stiffness;
 pub(super) mod pump_flow_limit;
 pub(super) mod seal_stiction;
 pub(super) mod speed_asymmetry;
@@ -21,6 +22,7 @@ pub use arm_gain::ArmGain;
 pub use leakage_drift::LeakageDrift;
 pub use load_dependent_speed::LoadDependentSpeed;
 pub use lock_damping::LockDamping;
+pub use lock_stiffness::{LOCK_STIFFNESS, LockStiffness};
 pub use pump_flow_limit::PumpFlowLimit;
 pub use seal_stiction::SealStiction;
 pub use speed_asymmetry::SpeedAsymmetry;
@@ -55,6 +57,8 @@ pub struct ArmEffects {
     pub sag: UnsupportedSag,
     /// Oil to force.
     pub gas: AccumulatorGas,
+    /// Oil to force.
+    pub lock_stiffness: LockStiffness,
     /// Oil to force.
     pub lock_damping: LockDamping,
     /// Rod against barrel.

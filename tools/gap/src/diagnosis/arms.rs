@@ -1,21 +1,26 @@
 //! Arm hydraulics on measured inputs: the valve's opening and the cylinder's load in, its stroke out.
 
-use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::Lag;
-use xt28_sim::{Arm, ArmInput, CylinderMotion, Effects};
+use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_sim::effects::{ArmEffects, SealStiction, WheelEffects};
+use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
+use super::loads::{KEPT, Loads};
+use super::pump;
 use super::signals::{DT_S, Samples, Signals};
 
-/// Time constant of the filter through which the ECU sees pressures, s: 0.94088 a tick (facts 3.2).
-const PRESSURE_FILTER_S: f64 = 0.164;
-/// Samples after which the oil is set to what is measured again: an error that grows for longer would
-/// run into the relief valve, which gives way to what is measured.
-const SEGMENT: usize = 500;
+/// Time over which the block forgets where it parted from the machine, s. Long enough that a creep of
+/// a tenth of a millimetre a second stands out over a run, short enough that what a law has wrong by a
+/// few per cent does not add up to more than the fault itself.
+const FORGET_S: f64 = 2.0;
+/// Stroke rate over which friction changes its sign, m/s: what 0.2 s of a reading in whole
+/// millimetres tell apart from rest.
+const SLIDING_M_S: f64 = 0.004;
 
 /// Stroke that the block predicts less the stroke measured, m, for one arm over a whole run.
 ///
-/// The block is driven with the opening that the ECU asked for and with the load that was measured;
-/// where its lock would make another force than that load, it would stand elsewhere.
+/// The block is driven with the opening that the ECU asked for, the load and the motion that were
+/// measured. It says which load the oil then makes and the ECU's filter shows; where that is another
+/// than the one read, the cylinder would stand elsewhere by what its lock gives way for the difference.
 #[must_use]
 pub(super) fn stroke_error_m(
     signals: &Signals,
@@ -23,29 +28,137 @@ pub(super) fn stroke_error_m(
     effects: &Effects,
     wheel: Wheel,
 ) -> Samples {
-    let arm = Arm::new(machine, &effects.arms[wheel]);
-    let (stroke, load) = (&signals.stroke_m[wheel], &signals.cylinder_load_n[wheel]);
-    let (bias, scale) =
-        (effects.wheels[wheel].stroke_bias.bias_m, effects.wheels[wheel].stroke_scale.factor);
-    let truth = |reading_m: f64| (reading_m - bias) / scale;
-    let mut state = arm.settled(truth(stroke[0]), load[0], DT_S);
-    let mut seen = Lag::new(load[0]);
-    (0..signals.len)
-        .map(|i| {
-            let motion = CylinderMotion {
-                stroke_m: truth(stroke[i]),
-                stroke_rate_m_s: signals.stroke_rate_m_s[wheel][i] / scale,
-            };
-            let input = ArmInput { command: signals.opening[wheel][i], load_n: load[i], motion };
-            if i % SEGMENT == 0 && i > 0 {
-                // The valve remembers; only the oil is taken up anew.
-                state.cylinder = arm.resumed(&input, DT_S).cylinder;
+    let drive = ArmDrive::new(signals, machine, effects, wheel);
+    let share = pump::flow_share(signals, machine, effects);
+    let (errors, softness) = drive.stroke_errors_m(&share);
+    let stiction = &effects.arms[wheel].stiction;
+    if stiction.coulomb_n + stiction.stribeck_n == 0.0 {
+        return errors;
+    }
+    let seen_n = seen_friction_n(stiction, &signals.stroke_rate_m_s[wheel]);
+    let each = errors.iter().zip(softness.iter().zip(&seen_n));
+    let with: Samples = each.map(|(error_m, (m_n, n))| error_m - m_n * n).collect();
+    // Where the pressures are taken, the seals are among the load or they are not; nobody knows.
+    let square =
+        |errors: &Samples| -> f64 { errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum() };
+    if square(&with) < square(&errors) { with } else { errors }
+}
+
+/// One arm with all it is driven with.
+pub(super) struct ArmDrive<'a> {
+    signals: &'a Signals,
+    wheel: Wheel,
+    arm: Arm,
+    sensors: WheelEffects,
+    loads: Loads,
+    area_bore_m2: f64,
+    stiffness_n_m: f64,
+}
+
+impl<'a> ArmDrive<'a> {
+    /// The arm of `wheel` as `effects` have it, to be driven with `signals`.
+    pub(super) fn new(
+        signals: &'a Signals,
+        machine: &Machine,
+        effects: &Effects,
+        wheel: Wheel,
+    ) -> Self {
+        // The seals are judged apart: see `seen_friction_n`.
+        let smooth = ArmEffects { stiction: SealStiction::default(), ..effects.arms[wheel] };
+        Self {
+            signals,
+            wheel,
+            arm: Arm::new(machine, &smooth),
+            sensors: effects.wheels[wheel],
+            loads: Loads::new(signals, machine, wheel),
+            area_bore_m2: machine.arms.area_bore_m2,
+            stiffness_n_m: machine.hydraulics.lock_stiffness_n_m
+                * effects.arms[wheel].lock_stiffness.factor,
+        }
+    }
+
+    /// Speed that the valve asks of the oil, extending > 0, m/s.
+    pub(super) fn speeds_asked_m_s(&self) -> Samples {
+        let mut state = self.started();
+        (0..self.signals.len).map(|i| self.arm.open(&mut state, &self.input(i), DT_S)).collect()
+    }
+
+    /// See [`stroke_error_m`], without the friction of the seals; and how far the sensor's reading
+    /// goes for a newton, m/N. `share` is what the pump gives of what is asked, by sample; all where
+    /// there are none.
+    ///
+    /// A force counts as the distance that this very arm gives way for it: were it the nominal arm's,
+    /// a softer one would seem to be measured better.
+    fn stroke_errors_m(&self, share: &[f64]) -> (Samples, Samples) {
+        let (is_new, s) = (&self.signals.load_is_new[self.wheel], &self.sensors);
+        let mut state = self.started();
+        let mut seen_n = self.loads.reading_n[0];
+        let (mut error_m, mut stiffness_n_m) = (0.0, self.stiffness_n_m);
+        let step = |i: usize| {
+            let input = self.input(i);
+            let made_n = self.arm.oil_force_n(&state, &input.motion);
+            seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(made_n);
+            let m_n = s.stroke_scale.factor / (stiffness_n_m * s.pressure_scale.factor);
+            if self.loads.is_drained.get(i) == Some(&true) {
+                // What came in past the valve is not in the opening: begin anew.
+                state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
+                (seen_n, error_m) = (self.loads.reading_n[i], f64::NAN);
+            } else if is_new[i] {
+                error_m = m_n * (seen_n - self.loads.reading_n[i]);
             }
-            arm.step(&mut state, &input, 1.0, DT_S);
-            // Pressures tell the force of the oil: what the seals hold is not among it.
-            let oil_n = arm.oil_force_n(&state, &motion);
-            let seen_n = seen.step(oil_n, PRESSURE_FILTER_S, DT_S);
-            scale * (seen_n - load[i]) / machine.hydraulics.lock_stiffness_n_m
-        })
-        .collect()
+            state.cylinder.rest_m -= (made_n - input.load_n) / stiffness_n_m * (DT_S / FORGET_S);
+            let asked_m_s = self.arm.open(&mut state, &input, DT_S);
+            let given_m_s = share.get(i).map_or(asked_m_s, |share| share * asked_m_s);
+            stiffness_n_m = self.arm.fill(&mut state, &input, given_m_s, DT_S).stiffness_n_m;
+            (error_m, m_n)
+        };
+        (0..self.signals.len).map(step).unzip()
+    }
+
+    fn started(&self) -> ArmState {
+        self.arm.resumed(&self.input(0), DT_S)
+    }
+
+    fn input(&self, i: usize) -> ArmInput {
+        let (s, stroke) = (&self.sensors, &self.signals.stroke_m[self.wheel]);
+        let truth = |reading_m: f64| (reading_m - s.stroke_bias.bias_m) / s.stroke_scale.factor;
+        let (now_m, before_m) = (truth(stroke[i]), truth(stroke[i.saturating_sub(1)]));
+        // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
+        let stroke_rate_m_s = (now_m - before_m) / DT_S;
+        let offset_n = s.pressure_bias.bias_pa * self.area_bore_m2;
+        ArmInput {
+            command: self.signals.opening[self.wheel][i],
+            load_n: (self.loads.oil_n[i] - offset_n) / s.pressure_scale.factor,
+            motion: CylinderMotion { stroke_m: now_m, stroke_rate_m_s },
+        }
+    }
+
+    /// Load that the sensors show for one of `load_n`.
+    fn read(&self, load_n: f64) -> f64 {
+        let s = &self.sensors;
+        s.pressure_scale.factor * load_n + s.pressure_bias.bias_pa * self.area_bore_m2
+    }
+}
+
+/// Friction of seals that slide as measured, as far as a load that has it in shows it.
+///
+/// By the sign of the rate and no more: what rubber remembers at rest cannot be driven with a reading
+/// in whole millimetres, it would follow any error.
+fn seen_friction_n(stiction: &SealStiction, rate_m_s: &Samples) -> Samples {
+    let mut seen_n = 0.0;
+    let step = |rate_m_s: &f64| {
+        let sign = (rate_m_s / SLIDING_M_S).tanh();
+        seen_n = KEPT * seen_n + (1.0 - KEPT) * sign * stiction.sliding_n(*rate_m_s);
+        seen_n
+    };
+    rate_m_s.iter().map(step).collect()
+}
+
+/// Speeds that all arms' valves ask, m/s.
+pub(super) fn all_speeds_asked_m_s(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+) -> PerWheel<Samples> {
+    PerWheel::from_fn(|w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s())
 }

@@ -1,39 +1,12 @@
-//! The ECUs' controllers on measured inputs: command and reading in, the opening they ask for out.
+//! The steering controllers on measured inputs: command and reading in, the opening they ask for out.
 
-use xt28_machine::{Machine, Wheel};
+use xt28_machine::Machine;
 use xt28_sim::Effects;
 
 use super::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
 const STEER_WINDUP_DEG_S: f64 = 40.0;
-
-/// Opening that the arm's position PI would ask for less the one that was asked for; zero while the
-/// arm is in another mode.
-#[must_use]
-pub(super) fn arm_opening_error(
-    signals: &Signals,
-    machine: &Machine,
-    effects: &Effects,
-    wheel: Wheel,
-) -> Samples {
-    let (h, gain) = (&machine.hydraulics, effects.arms[wheel].gain);
-    let (kp, ki) = (h.manual_kp_per_mm * gain.kp_factor, h.manual_ki_per_mm_s * gain.ki_factor);
-    let mut integral_mm_s = 0.0;
-    let step = |i: usize| {
-        if signals.arm_mode[i] != 2.0 {
-            integral_mm_s = 0.0;
-            return 0.0;
-        }
-        let error_mm =
-            (signals.target_stroke_m[wheel][i] - signals.stroke_reading_m[wheel][i]) * 1e3;
-        integral_mm_s = (integral_mm_s + error_mm * DT_S).clamp(-h.manual_windup, h.manual_windup);
-        let asked =
-            (kp * error_mm + ki * integral_mm_s).clamp(-h.manual_opening_max, h.manual_opening_max);
-        asked - signals.opening[wheel][i]
-    };
-    (0..signals.len).map(step).collect()
-}
 
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint less the one asked for.
 #[must_use]

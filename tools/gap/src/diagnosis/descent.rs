@@ -24,11 +24,7 @@ pub(super) fn descend(
     start: Vec<f64>,
     parameters: &[Parameter],
 ) -> End {
-    let mut steps: Vec<f64> = parameters
-        .iter()
-        .zip(&start)
-        .map(|(p, v)| p.tolerance.max(0.2 * (v - p.neutral).abs()))
-        .collect();
+    let mut steps: Vec<f64> = parameters.iter().zip(&start).map(first_step).collect();
     let mut end = End { cost: cost(&start), at: start };
     for _ in 0..ROUNDS {
         let before = end.clone();
@@ -50,6 +46,13 @@ pub(super) fn descend(
         }
     }
     end
+}
+
+/// A tolerance, or a fifth of what is there; half way to the end of the range where that is nearer.
+fn first_step((p, value): (&Parameter, &f64)) -> f64 {
+    let step = p.tolerance.max(0.2 * (value - p.neutral).abs());
+    let room = p.range.map(|end| 0.5 * (value - end).abs());
+    room.into_iter().filter(|room| *room > 0.0).fold(step, f64::min)
 }
 
 /// One parabola along `direction`; how many of it the end moved.

@@ -7,7 +7,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Scope};
 
 use super::signals::{Samples, Signals};
-use super::{arms, controllers, driving, joints, stance, travel};
+use super::{arms, controllers, driving, joints, position_control, stance, travel};
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;
@@ -77,8 +77,8 @@ impl Signal {
     #[must_use]
     pub const fn floor(self) -> Floor {
         let (sigma, correlation_s) = match self {
-            Self::Stroke => (0.35e-3, 0.25),
-            Self::ArmOpening => (1.5e-3, 0.5),
+            Self::Stroke => (0.2e-3, 0.8),
+            Self::ArmOpening => (1.0e-3, 0.5),
             Self::JointAngle => (0.0065, 1.0),
             Self::SteerOpening => (0.004, 0.5),
             Self::DriveSpeed => (0.025, 0.5),
@@ -181,7 +181,7 @@ impl Generator {
                 vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, effects, w))]
             }
             Self::ArmEcu(w) => {
-                let error = controllers::arm_opening_error(s, machine, effects, w);
+                let error = position_control::arm_opening_error(s, machine, effects, w);
                 vec![one(Signal::ArmOpening, error)]
             }
             Self::Joint(j) => {

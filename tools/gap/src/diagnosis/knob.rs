@@ -2,7 +2,7 @@
 
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
-use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope, Slot};
+use xt28_sim::effects::{CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Scope, Slot};
 
 /// One number that may be other than one believes.
 #[derive(Clone, Copy, Debug)]
@@ -29,11 +29,6 @@ pub static TOLERANCES: &[Tolerance] = &[
     Tolerance { name: "front mass", sigma: 0.03, apply: |m, f| m.masses.front_frame_kg *= f },
     Tolerance { name: "middle mass", sigma: 0.03, apply: |m, f| m.masses.middle_frame_kg *= f },
     Tolerance { name: "rear mass", sigma: 0.03, apply: |m, f| m.masses.rear_frame_kg *= f },
-    Tolerance {
-        name: "lock stiffness",
-        sigma: 0.05,
-        apply: |m, f| m.hydraulics.lock_stiffness_n_m *= f,
-    },
     Tolerance {
         name: "joint stiffness",
         sigma: 0.05,
@@ -79,7 +74,10 @@ impl Knob {
     /// What differs from machine to machine, and no effect.
     #[must_use]
     pub fn tolerances() -> Vec<Self> {
-        TOLERANCES.iter().map(Self::Machine).collect()
+        let locks = LOCK_STIFFNESS.parameters.iter().flat_map(|parameter| {
+            Wheel::ALL.map(|w| Self::Effect(&LOCK_STIFFNESS, parameter, Scope::Wheel(w)))
+        });
+        TOLERANCES.iter().map(Self::Machine).chain(locks).collect()
     }
 
     /// Value at which it changes nothing.

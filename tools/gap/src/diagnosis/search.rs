@@ -93,13 +93,23 @@ fn first_look(evidence: &Evidence<'_>, effect: &'static Effect, from_s: f64) -> 
     starts
 }
 
+/// Values in equal ratios from neutral down to the least, for what is neutral at the upper end of a
+/// positive range: a limit that is far away changes nothing, so that no slope leads to it.
+fn falling(p: &Parameter) -> impl Iterator<Item = f64> {
+    let [least, most] = p.range;
+    let is_limit = least > 0.0 && p.neutral == most;
+    let values = move |share: f64| most * (least / most).powf(share);
+    [0.35, 0.5, 0.6, 0.7, 0.8].into_iter().filter(move |_| is_limit).map(values)
+}
+
 /// One parameter at a time on both sides of neutral, near and far.
 fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     let mut grid: Vec<Vec<f64>> = Vec::new();
     for (k, p) in parameters.iter().enumerate() {
-        for reach in REACHES {
+        let near = REACHES.map(|reach| p.neutral + reach * p.tolerance);
+        for value in near.into_iter().chain(falling(p)) {
             let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
-            values[k] = (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
+            values[k] = value.clamp(p.range[0], p.range[1]);
             if values[k] != p.neutral && !grid.contains(&values) {
                 grid.push(values);
             }

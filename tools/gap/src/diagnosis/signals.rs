@@ -41,6 +41,10 @@ pub struct Signals {
     pub stroke_rate_m_s: PerWheel<Samples>,
     /// Loads of the cylinders, from their pressures.
     pub cylinder_load_n: PerWheel<Samples>,
+    /// Pressures of chambers A and B, Pa, as the ECU's filter shows them; empty where not logged.
+    pub chamber_pa: PerWheel<[Samples; 2]>,
+    /// Whether the load (pressures where logged) is a reading of this very sample.
+    pub load_is_new: PerWheel<Vec<bool>>,
     /// Wheel speeds, forward > 0.
     pub wheel_speed_rad_s: PerWheel<Samples>,
     /// Opening that the ECU's currents ask of the front and the rear steering valve.
@@ -115,6 +119,15 @@ impl Signals {
             stroke_m,
             stroke_reading_m,
             cylinder_load_n: wheels(Channel::CylinderLoad),
+            chamber_pa: PerWheel::from_fn(|w| {
+                [sample(Channel::BorePressure(w)), sample(Channel::RodPressure(w))]
+            }),
+            load_is_new: PerWheel::from_fn(|w| {
+                let pressures = [Channel::BorePressure(w), Channel::RodPressure(w)];
+                let logged = pressures.iter().all(|channel| series.contains_key(channel));
+                let load = Channel::CylinderLoad(w);
+                is_new(series.get(if logged { &pressures[0] } else { &load }), len)
+            }),
             wheel_speed_rad_s: wheels(Channel::WheelSpeed),
             steer_opening: [
                 steer(SteerSide::FrontA, SteerSide::FrontB),
@@ -192,6 +205,19 @@ fn held(series: Option<&Series>, len: usize) -> Samples {
     (0..len).map(sample).collect()
 }
 
+/// Whether a sample came since the instant before.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn is_new(series: Option<&Series>, len: usize) -> Vec<bool> {
+    let mut new = vec![false; len];
+    for (at_s, _) in series.into_iter().flat_map(Series::iter) {
+        // The first instant of the clock that is not before it.
+        if let Some(new) = new.get_mut((at_s / DT_S + 0.5).floor().max(0.0) as usize) {
+            *new = true;
+        }
+    }
+    new
+}
+
 /// Slope of a quantised reading: central difference over 0.2 s, one-sided at the ends.
 #[allow(clippy::cast_precision_loss)]
 fn slope(samples: &Samples) -> Samples {
@@ -214,23 +240,24 @@ const CUT_M: f64 = 1.0e-3;
 /// A reading that stays for longer says only that the stroke is within its step.
 const STAYS: usize = 40;
 
-/// Strokes from readings that are cut off to whole millimetres. When a reading changes, the stroke is
-/// just at the edge between the two; in between it goes straight from edge to edge.
+/// Strokes from readings that are cut off to whole millimetres. Between two readings that differ, the
+/// stroke has crossed the edges between them; from crossing to crossing it goes straight.
 #[allow(clippy::cast_precision_loss)]
 fn uncut(reading: &Samples) -> Samples {
-    let mut known: Vec<(usize, f64)> = Vec::new();
+    let mut known: Vec<(f64, f64)> = Vec::new();
     let middle = |value: f64| value + 0.5 * CUT_M;
-    let stay = |known: &mut Vec<(usize, f64)>, from: usize, to: usize, value: f64| {
+    let stay = |known: &mut Vec<(f64, f64)>, from: usize, to: usize, value: f64| {
         if to - from > STAYS {
-            known.push((from + STAYS / 2, middle(value)));
-            known.push((to - STAYS / 2, middle(value)));
+            known.push(((from + STAYS / 2) as f64, middle(value)));
+            known.push(((to - STAYS / 2) as f64, middle(value)));
         }
     };
     let mut since = 0;
     for i in 1..reading.len() {
         if reading[i] != reading[i - 1] {
             stay(&mut known, since, i, reading[i - 1]);
-            known.push((i, reading[i].max(reading[i - 1])));
+            // All edges crossed on the way, at the middle of the sample.
+            known.push((i as f64 - 0.5, middle(0.5 * (reading[i] + reading[i - 1]))));
             since = i;
         }
     }
@@ -240,13 +267,12 @@ fn uncut(reading: &Samples) -> Samples {
     let mut after = 0;
     (0..reading.len())
         .map(|i| {
-            while after < known.len() && known[after].0 <= i {
+            let now = i as f64;
+            while after < known.len() && known[after].0 <= now {
                 after += 1;
             }
             match (after.checked_sub(1).map(|k| known[k]), known.get(after)) {
-                (Some((from, a)), Some(&(to, b))) => {
-                    a + (b - a) * (i - from) as f64 / (to - from) as f64
-                }
+                (Some((from, a)), Some(&(to, b))) => a + (b - a) * (now - from) / (to - from),
                 (Some((_, value)), None) | (None, Some(&(_, value))) => value,
                 (None, None) => middle(reading[i]),
             }

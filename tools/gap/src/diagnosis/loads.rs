@@ -1,0 +1,92 @@
+//! One cylinder's load as the ECU reads it, and as it was before the ECU's pressure filter.
+
+use xt28_machine::{Machine, Wheel};
+
+use super::signals::{Samples, Signals};
+
+/// What the ECU's pressure filter keeps of its last output a tick (facts 3.2): 0.164 s.
+pub(super) const KEPT: f64 = 0.940_88;
+
+/// Share of the pressure of an idle bore chamber below which it counts as drained (assumed: above what
+/// a reading in whole kilopascals leaves open, below any chamber that is full).
+const DRAINED: f64 = 0.8;
+
+/// Loads of one cylinder over a run, positive under weight.
+pub(super) struct Loads {
+    /// As read, N.
+    pub(super) reading_n: Samples,
+    /// With the filter undone, N.
+    pub(super) oil_n: Samples,
+    /// Whether the bore chamber was drained: its piston ran ahead of the oil, so that what came in
+    /// came past the valve. Empty where no pressures are logged.
+    pub(super) is_drained: Vec<bool>,
+}
+
+impl Loads {
+    /// From the chambers' pressures where the log has them, else from the loads that it derives.
+    ///
+    /// Between two readings the load before the filter is the one that, held, leads from the first
+    /// to the second. A reading is whole kilopascals, so what is undone is right to 0.2 kN.
+    pub(super) fn new(signals: &Signals, machine: &Machine, wheel: Wheel) -> Self {
+        let [bore, rod] = &signals.chamber_pa[wheel];
+        let (a, is_new) = (&machine.arms, &signals.load_is_new[wheel]);
+        let reading_n: Samples = if bore.is_empty() || rod.is_empty() {
+            signals.cylinder_load_n[wheel].clone()
+        } else {
+            let load = |(bore, rod): (&f64, &f64)| bore * a.area_bore_m2 - rod * a.area_rod_m2;
+            bore.iter().zip(rod).map(load).collect()
+        };
+        let idle_pa = machine.hydraulics.return_pressure_pa * a.area_rod_m2 / a.area_bore_m2;
+        let is_drained = undone(bore, is_new).iter().map(|pa| *pa < DRAINED * idle_pa).collect();
+        let oil_n = undone(&reading_n, is_new);
+        Self { reading_n, oil_n, is_drained }
+    }
+}
+
+/// Input of a filter that keeps [`KEPT`] of itself every sample, from its output where that is new.
+fn undone(output: &Samples, is_new: &[bool]) -> Samples {
+    let mut input = output.clone();
+    let (mut from, mut kept) = (0, 1.0);
+    for i in 1..output.len() {
+        kept *= KEPT;
+        if is_new[i] {
+            let held = (output[i] - kept * output[from]) / (1.0 - kept);
+            input[from + 1..=i].fill(held);
+            (from, kept) = (i, 1.0);
+        }
+    }
+    input
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_filter_does_is_undone_at_any_rate_of_readings() {
+        for every in [1, 5] {
+            let input: Samples = (0..200).map(|i| f64::from(i / 20) * 1e3).collect();
+            let mut kept = 0.0;
+            let filtered: Samples = input
+                .iter()
+                .map(|n| {
+                    kept = KEPT * kept + (1.0 - KEPT) * n;
+                    kept
+                })
+                .collect();
+            let is_new: Vec<bool> = (0..200).map(|i| i % every == every - 1).collect();
+            let mut last = 0.0;
+            let held: Samples = filtered
+                .iter()
+                .zip(&is_new)
+                .map(|(now, is_new)| {
+                    last = if *is_new { *now } else { last };
+                    last
+                })
+                .collect();
+            let found = undone(&held, &is_new);
+            let worst = (every..200).map(|i| (found[i] - input[i]).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-6, "{every}: {worst}");
+        }
+    }
+}

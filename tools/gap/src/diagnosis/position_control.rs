@@ -1,0 +1,160 @@
+//! The arm ECU's position PI on measured inputs: commanded and read strokes in, the opening out.
+
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::Effects;
+
+use super::signals::{DT_S, Samples, Signals};
+
+/// Opening of one milliampere of an arm valve's current (facts 1.1: 400 mA from start to full).
+const STEP: f64 = 1.0 / 400.0;
+/// The mode in which the PI is at work: manual position.
+const MANUAL_POSITION: f64 = 2.0;
+
+/// Opening that the position PI would ask for less the one that was asked for; `NaN` in other modes.
+///
+/// A current in whole milliamperes leaves open which opening was meant: what would show as the same
+/// current, cut off or rounded, is no error. Nor does the log say what the PI had summed up before
+/// it began: the sum that fits best is taken.
+#[must_use]
+pub(super) fn arm_opening_error(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    wheel: Wheel,
+) -> Samples {
+    let pi = Pi::new(machine, effects, wheel);
+    let mut errors = Samples::with_capacity(signals.len);
+    while errors.len() < signals.len {
+        let from = errors.len();
+        let at_work = |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION;
+        let to = (from..signals.len).find(|i| !at_work(i)).unwrap_or(signals.len);
+        let stretch = Stretch {
+            error_mm: (from..to)
+                .map(|i| signals.target_stroke_m[wheel][i] - signals.stroke_reading_m[wheel][i])
+                .map(|m| (m * 1e3).round())
+                .collect(),
+            opening: &signals.opening[wheel][from..to],
+        };
+        errors.extend(pi.best_errors(&stretch));
+        let idle = (to..signals.len).find(at_work).unwrap_or(signals.len) - to;
+        errors.extend(core::iter::repeat_n(f64::NAN, idle));
+    }
+    errors
+}
+
+/// A stretch of a run in which the PI is at work.
+struct Stretch<'a> {
+    /// Target less reading, both whole millimetres.
+    error_mm: Vec<f64>,
+    opening: &'a [f64],
+}
+
+/// The law (paper 3.2; limits as in the machine file).
+struct Pi {
+    kp_per_mm: f64,
+    ki_per_mm_s: f64,
+    windup_mm_s: f64,
+    most: f64,
+}
+
+impl Pi {
+    fn new(machine: &Machine, effects: &Effects, wheel: Wheel) -> Self {
+        let (h, gain) = (&machine.hydraulics, effects.arms[wheel].gain);
+        Self {
+            kp_per_mm: h.manual_kp_per_mm * gain.kp_factor,
+            ki_per_mm_s: h.manual_ki_per_mm_s * gain.ki_factor,
+            windup_mm_s: h.manual_windup,
+            most: h.manual_opening_max,
+        }
+    }
+
+    /// Errors from the sum at the beginning that makes the fewest: tenths of the windup, then halves
+    /// of halves about the best.
+    fn best_errors(&self, stretch: &Stretch<'_>) -> Samples {
+        let square = |sum: f64| self.errors(stretch, sum).map(|e| e * e).sum::<f64>();
+        let mut best = (square(0.0), 0.0);
+        let mut step = 0.1 * self.windup_mm_s;
+        let consider = |best: &mut (f64, f64), sum: f64| {
+            let squares = square(sum);
+            if squares < best.0 {
+                *best = (squares, sum);
+            }
+        };
+        for tenth in (-10..=10).map(f64::from) {
+            consider(&mut best, tenth * step);
+        }
+        for _ in 0..3 {
+            step *= 0.5;
+            let middle = best.1;
+            consider(&mut best, middle - step);
+            consider(&mut best, middle + step);
+        }
+        self.errors(stretch, best.1).collect()
+    }
+
+    fn errors(&self, stretch: &Stretch<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {
+        let asked = self.asked(&stretch.error_mm, sum_mm_s);
+        asked.zip(stretch.opening).map(|(asked, opening)| beyond_step(asked, *opening))
+    }
+
+    /// The openings asked for, with `sum_mm_s` summed up before.
+    fn asked(&self, error_mm: &[f64], mut sum_mm_s: f64) -> impl Iterator<Item = f64> {
+        error_mm.iter().map(move |error_mm| {
+            sum_mm_s = (sum_mm_s + error_mm * DT_S).clamp(-self.windup_mm_s, self.windup_mm_s);
+            let asked = self.kp_per_mm * error_mm + self.ki_per_mm_s * sum_mm_s;
+            asked.clamp(-self.most, self.most)
+        })
+    }
+}
+
+/// How far `asked` is from what shows as the current of `opening`: half a step below to a whole step
+/// above in size, or anything less than a step where there is no current.
+fn beyond_step(asked: f64, opening: f64) -> f64 {
+    let [below, above] = match opening {
+        0.0 => [STEP, STEP],
+        o if o > 0.0 => [0.5 * STEP, STEP],
+        _ => [STEP, 0.5 * STEP],
+    };
+    asked - asked.clamp(opening - below, opening + above)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pi() -> Pi {
+        Pi::new(&Machine::xt28(), &Effects::default(), Wheel::Fr)
+    }
+
+    /// What an ECU with `sum` on its mind sends, in whole milliamperes cut off.
+    fn sent(pi: &Pi, error_mm: &[f64], sum: f64) -> Vec<f64> {
+        pi.asked(error_mm, sum).map(|asked| (asked / STEP).trunc() * STEP).collect()
+    }
+
+    fn errors_mm() -> Vec<f64> {
+        (0..1500).map(|i| (f64::from(i) * 0.01).sin() * 12.0).map(f64::round).collect()
+    }
+
+    #[test]
+    fn its_own_currents_leave_nothing_whatever_it_had_summed_up() {
+        for sum in [-100.0, -13.0, 0.0, 61.0] {
+            let error_mm = errors_mm();
+            let opening = sent(&pi(), &error_mm, sum);
+            let stretch = Stretch { error_mm, opening: &opening };
+            let worst =
+                pi().best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()));
+            assert!(worst < 0.2 * STEP, "{sum}: {worst}");
+        }
+    }
+
+    #[test]
+    fn another_gain_shows() {
+        let error_mm = errors_mm();
+        let opening = sent(&pi(), &error_mm, 0.0);
+        let stretch = Stretch { error_mm, opening: &opening };
+        let louder = Pi { kp_per_mm: 1.5 * pi().kp_per_mm, ..pi() };
+        let errors = louder.best_errors(&stretch);
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / 1500.0).sqrt();
+        assert!(rms > 4.0 * STEP, "{rms}");
+    }
+}

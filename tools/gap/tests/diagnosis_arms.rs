@@ -1,0 +1,138 @@
+//! The arms' residuals: silent on a sound machine of another make, telling on our own with a fault.
+
+use std::path::{Path, PathBuf};
+
+use xt28_gap::diagnosis::{Direction, Evidence, Fit, Generator, Knob, Regime, Signals, search};
+use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Terrain};
+use xt28_machine::{Axle, Machine, Wheel};
+use xt28_sim::effects::{Effect, Overlay, Scope, find};
+use xt28_sim::{Effects, Solver};
+
+#[allow(clippy::disallowed_macros)] // A test that skips says so.
+fn nominal() -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/field-data/aux/nominal");
+    if !path.exists() {
+        eprintln!("SKIPPED: {} is not there", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+fn log(name: &str) -> Option<(FieldLog, Terrain)> {
+    let folder = nominal()?;
+    let decoder = Decoder::load(&folder.join("xt28-field.dbc"), &Mapping::default()).unwrap();
+    let path = folder.join(name);
+    let terrain = About::terrain_of(&folder.join("about.toml"), &path).unwrap();
+    Some((FieldLog::load(&path, &decoder, false).unwrap(), terrain))
+}
+
+fn signals(name: &str) -> Option<Signals> {
+    let (log, terrain) = log(name)?;
+    Some(Signals::new(&log, terrain).unwrap())
+}
+
+fn rms(generator: Generator, signals: &Signals) -> f64 {
+    let residual = &generator.residuals(signals, &Machine::xt28(), &Effects::default())[0].values;
+    let heard: Vec<f64> = residual.iter().copied().filter(|r| r.is_finite()).collect();
+    (heard.iter().map(|r| r * r).sum::<f64>() / heard.len() as f64).sqrt()
+}
+
+#[test]
+fn arms_of_a_sound_machine_of_another_make_leave_less_than_a_floor() {
+    for run in ["run-1-arm_step.log.gz", "run-2-multisine.log.gz", "run-5-ramp.log.gz"] {
+        let Some(signals) = signals(run) else { return };
+        for wheel in Wheel::ALL {
+            let stroke = rms(Generator::ArmStroke(wheel), &signals);
+            assert!((0.1..1.0).contains(&stroke), "{run} {wheel}: {stroke}");
+            // The position PI is known to the milliampere.
+            let opening = rms(Generator::ArmEcu(wheel), &signals);
+            assert!(opening < 0.01, "{run} {wheel}: {opening}");
+        }
+    }
+}
+
+#[test]
+fn a_load_read_twenty_times_a_second_is_compared_when_it_is_read() {
+    let Some((log, terrain)) = log("run-1-arm_step.log.gz") else { return };
+    let mut series = log.all_series().clone();
+    let of_chamber = |c: &Channel| matches!(c, Channel::BorePressure(_) | Channel::RodPressure(_));
+    series.retain(|channel, _| !of_chamber(channel));
+    let signals = Signals::of_series("held", &series, log.duration_s(), terrain).unwrap();
+    assert!(signals.chamber_pa.iter().all(|(_, [bore, rod])| bore.is_empty() && rod.is_empty()));
+    for wheel in Wheel::ALL {
+        let stroke = rms(Generator::ArmStroke(wheel), &signals);
+        assert!(stroke < 1.5, "{wheel}: {stroke}");
+    }
+}
+
+#[test]
+fn every_residual_sample_has_a_regime() {
+    let Some(signals) = signals("run-1-arm_step.log.gz") else { return };
+    let regimes = Regime::of_run(&signals, &Machine::xt28(), Wheel::Fr);
+    assert_eq!(regimes.len(), signals.len / 10);
+    for direction in [Direction::Closed, Direction::Extending, Direction::Retracting] {
+        assert!(regimes.iter().any(|regime| regime.direction == direction), "{direction:?}");
+    }
+    assert!(regimes.iter().all(|regime| !regime.hangs), "front arms carry throughout");
+}
+
+/// Fits of `rivals` at every scope to our machine with `overlay` on the commands of a field log; best
+/// first.
+fn ranked(run: &str, overlay: &str, rivals: &[&str]) -> Option<Vec<Fit>> {
+    let (log, terrain) = log(run)?;
+    let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
+    let machine = Machine::xt28();
+    let replay = Replay::run(&log, &machine, &overlay.effects(), Solver::Rapier, &terrain).unwrap();
+    let mut series = replay.all_series().clone();
+    for (channel, samples) in log.all_series() {
+        if channel.is_command() {
+            series.insert(*channel, samples.clone());
+        }
+    }
+    let runs = [Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap()];
+    let evidence = Evidence::new(&runs, &machine, Effects::default(), &Knob::all());
+    let rivals: Vec<&Effect> = rivals.iter().map(|name| find(name).unwrap()).collect();
+    Some(search(&evidence, &rivals, 0.0))
+}
+
+fn assert_first(fits: &[Fit], effect: &str, scope: Scope, near: f64, within: f64) {
+    let first = &fits[0];
+    let found = (first.hypothesis.effect.name, first.hypothesis.scope);
+    assert_eq!(found, (find(effect).unwrap().name, scope), "{:?}", &fits[..2]);
+    assert!(first.log_evidence > 20.0, "{first:?}");
+    assert!((first.values[0] - near).abs() < within, "{first:?}");
+}
+
+const FRONT: Scope = Scope::Axle(Axle::Front);
+
+#[test]
+fn a_leak_is_no_gain_and_no_deadband() {
+    let overlay = "[[effect]]\nname = \"leakage-drift\"\nscope = \"front\"\nrate_m_s = 0.008";
+    let rivals = ["leakage-drift", "valve-gain", "valve-deadband"];
+    let Some(fits) = ranked("run-1-arm_step.log.gz", overlay, &rivals) else { return };
+    assert_first(&fits, "leakage-drift", FRONT, 0.008, 0.0008);
+}
+
+#[test]
+fn a_lag_is_no_delay_and_no_play() {
+    let overlay = "[[effect]]\nname = \"valve-lag\"\nscope = \"FR\"\ntime_constant_s = 0.2";
+    let rivals = ["valve-lag", "arm-delay", "valve-hysteresis"];
+    let Some(fits) = ranked("run-2-multisine.log.gz", overlay, &rivals) else { return };
+    assert_first(&fits, "valve-lag", Scope::Wheel(Wheel::Fr), 0.2, 0.03);
+}
+
+#[test]
+fn a_short_pump_is_no_gain_and_no_lag() {
+    let overlay = "[[effect]]\nname = \"pump-flow-limit\"\nflow_m3_s = 0.0008";
+    let rivals = ["pump-flow-limit", "valve-gain", "valve-lag"];
+    let Some(fits) = ranked("run-1-arm_step.log.gz", overlay, &rivals) else { return };
+    assert_first(&fits, "pump-flow-limit", Scope::All, 0.0008, 0.0001);
+}
+
+#[test]
+fn another_gain_of_the_position_control_shows_on_the_ecu_alone() {
+    let overlay = "[[effect]]\nname = \"arm-gain\"\nscope = \"front\"\nkp_factor = 1.3";
+    let rivals = ["arm-gain", "valve-gain", "arm-delay"];
+    let Some(fits) = ranked("run-2-multisine.log.gz", overlay, &rivals) else { return };
+    assert_first(&fits, "arm-gain", FRONT, 1.3, 0.03);
+}

@@ -52,7 +52,6 @@ pub(super) struct ArmDrive<'a> {
     sensors: WheelEffects,
     loads: Loads,
     area_bore_m2: f64,
-    stiffness_n_m: f64,
 }
 
 impl<'a> ArmDrive<'a> {
@@ -72,8 +71,6 @@ impl<'a> ArmDrive<'a> {
             sensors: effects.wheels[wheel],
             loads: Loads::new(signals, machine, wheel),
             area_bore_m2: machine.arms.area_bore_m2,
-            stiffness_n_m: machine.hydraulics.lock_stiffness_n_m
-                * effects.arms[wheel].lock_stiffness.factor,
         }
     }
 
@@ -93,10 +90,11 @@ impl<'a> ArmDrive<'a> {
         let (is_new, s) = (&self.signals.load_is_new[self.wheel], &self.sensors);
         let mut state = self.started();
         let mut seen_n = self.loads.reading_n[0];
-        let (mut error_m, mut stiffness_n_m) = (0.0, self.stiffness_n_m);
+        let mut error_m = 0.0;
         let step = |i: usize| {
             let input = self.input(i);
             let made_n = self.arm.oil_force_n(&state, &input.motion);
+            let stiffness_n_m = self.stiffness_n_m(&state, &input.motion, made_n);
             seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(made_n);
             let m_n = s.stroke_scale.factor / (stiffness_n_m * s.pressure_scale.factor);
             if self.loads.is_drained.get(i) == Some(&true) {
@@ -109,10 +107,17 @@ impl<'a> ArmDrive<'a> {
             state.cylinder.rest_m -= (made_n - input.load_n) / stiffness_n_m * (DT_S / FORGET_S);
             let asked_m_s = self.arm.open(&mut state, &input, DT_S);
             let given_m_s = share.get(i).map_or(asked_m_s, |share| share * asked_m_s);
-            stiffness_n_m = self.arm.fill(&mut state, &input, given_m_s, DT_S).stiffness_n_m;
+            self.arm.fill(&mut state, &input, given_m_s, DT_S);
             (error_m, m_n)
         };
         (0..self.signals.len).map(step).unzip()
+    }
+
+    /// Of the oil that makes `made_n` in this motion; the end stops are not among it.
+    fn stiffness_n_m(&self, state: &ArmState, motion: &CylinderMotion, made_n: f64) -> f64 {
+        const BY_M: f64 = 1.0e-4;
+        let further = CylinderMotion { stroke_m: motion.stroke_m - BY_M, ..*motion };
+        (self.arm.oil_force_n(state, &further) - made_n) / BY_M
     }
 
     fn started(&self) -> ArmState {

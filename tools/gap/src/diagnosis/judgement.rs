@@ -242,8 +242,12 @@ mod tests {
             after: left(1.0),
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
-        let stood: Vec<&str> =
-            diagnosis.causes.iter().filter(|c| c.probability > 0.5).map(|c| c.effect.name).collect();
+        let stood: Vec<&str> = diagnosis
+            .causes
+            .iter()
+            .filter(|c| c.probability > 0.5)
+            .map(|c| c.effect.name)
+            .collect();
         assert_eq!(stood, ["arm-delay", "payload"]);
     }
 

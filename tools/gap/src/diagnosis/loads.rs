@@ -7,7 +7,7 @@ use super::signals::{Samples, Signals};
 /// What the ECU's pressure filter keeps of its last output a tick (facts 3.2): 0.164 s.
 pub(super) const KEPT: f64 = 0.940_88;
 
-/// Share of the pressure of an idle bore chamber below which it counts as drained (assumed: above what
+/// Share of the pressure of an idle chamber below which it counts as drained (assumed: above what
 /// a reading in whole kilopascals leaves open, below any chamber that is full).
 const DRAINED: f64 = 0.8;
 
@@ -17,8 +17,8 @@ pub(super) struct Loads {
     pub(super) reading_n: Samples,
     /// With the filter undone, N.
     pub(super) oil_n: Samples,
-    /// Whether the bore chamber was drained: its piston ran ahead of the oil, so that what came in
-    /// came past the valve. Empty where no pressures are logged.
+    /// Whether a chamber was drained: the piston ran ahead of its oil, so that what came in came past
+    /// the valve. Empty where no pressures are logged.
     pub(super) is_drained: Vec<bool>,
 }
 
@@ -36,8 +36,11 @@ impl Loads {
             let load = |(bore, rod): (&f64, &f64)| bore * a.area_bore_m2 - rod * a.area_rod_m2;
             bore.iter().zip(rod).map(load).collect()
         };
-        let idle_pa = machine.hydraulics.return_pressure_pa * a.area_rod_m2 / a.area_bore_m2;
-        let is_drained = undone(bore, is_new).iter().map(|pa| *pa < DRAINED * idle_pa).collect();
+        let rod_pa = DRAINED * machine.hydraulics.return_pressure_pa;
+        let bore_pa = rod_pa * a.area_rod_m2 / a.area_bore_m2;
+        let (true_bore, true_rod) = (undone(bore, is_new), undone(rod, is_new));
+        let each = true_bore.iter().zip(&true_rod);
+        let is_drained = each.map(|(bore, rod)| *bore < bore_pa || *rod < rod_pa).collect();
         let oil_n = undone(&reading_n, is_new);
         Self { reading_n, oil_n, is_drained }
     }

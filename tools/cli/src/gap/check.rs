@@ -68,7 +68,12 @@ impl Check {
         let options = Options { how_far: !self.no_how_far, baselines: !self.no_baselines };
         let examined = examination.examine(options, &clock, &told)?;
         bar.finish_and_clear();
-        let mut report = Report::new(&examination, examination.open(examined)?);
+        let mut judged = examination.open(examined)?;
+        if !self.no_how_far {
+            eprintln!("fitting the true causes, for how far a gap can shrink at best");
+            judged = examination.with_oracle(judged)?;
+        }
+        let mut report = Report::new(&examination, judged);
         if self.sweep {
             let told = |w: &Withheld| eprintln!("without {}: {:?}", w.effect, w.verdict);
             report = report.with_sweep(sweep(self.seed, &told)?);

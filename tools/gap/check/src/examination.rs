@@ -2,13 +2,14 @@
 
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use xt28_gap::diagnosis::{Diagnosis, Inquiry};
+use xt28_gap::diagnosis::{Diagnosis, Inquiry, Shrink};
 use xt28_gap_plants::Seal;
 use xt28_machine::Machine;
 
 use crate::CheckError;
 use crate::baselines::BASELINES;
 use crate::crew;
+use crate::oracle::oracle;
 use crate::reply::Reply;
 use crate::source::Source;
 use crate::truth::Truth;
@@ -50,6 +51,8 @@ pub struct Judged {
     pub examined: Examined,
     /// What is so.
     pub truth: Truth,
+    /// How far the gap shrinks for who knows the truth, where that was asked.
+    pub oracle: Option<Shrink>,
 }
 
 /// Reads the wall clock, s from any instant: for who may.
@@ -130,9 +133,21 @@ impl Examination {
             return Err(CheckError::SealBroken { seal: self.seal.to_string() });
         }
         let judge = |((source, text), examined): ((&Source, &String), Examined)| {
-            Ok(Judged { truth: truth(source, text)?, examined })
+            Ok(Judged { truth: truth(source, text)?, examined, oracle: None })
         };
         self.sources.iter().zip(&texts).zip(examined).map(judge).collect()
+    }
+
+    /// The same cases with how far the gap shrinks for who knows their truth; on all cores.
+    ///
+    /// # Errors
+    /// [`CheckError`] of the first case whose logs cannot be made, read or replayed.
+    pub fn with_oracle(&self, judged: Vec<Judged>) -> Result<Vec<Judged>, CheckError> {
+        let cases: Vec<_> = self.sources.iter().zip(judged).collect();
+        let one = |(source, judged): &(&Source, Judged)| {
+            Ok(Judged { oracle: oracle(source, &judged.truth)?, ..judged.clone() })
+        };
+        crew::each(&cases, one).into_iter().collect()
     }
 }
 

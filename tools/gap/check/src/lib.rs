@@ -15,6 +15,7 @@ mod coverage;
 mod crew;
 mod error;
 mod examination;
+mod oracle;
 mod reply;
 mod report;
 mod score;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde_json::{Value, json};
-use xt28_gap::diagnosis::Verdict;
+use xt28_gap::diagnosis::{Shrink, Verdict};
 
 use crate::baselines::BASELINES;
 use crate::coverage::covered;
@@ -181,6 +181,7 @@ impl Report {
                 "truth": case.truth.facts.iter().map(ToString::to_string).collect::<Vec<_>>(),
                 "right": is_right(case),
                 "seconds": case.examined.seconds,
+                "oracle": case.oracle,
                 "diagnosis": case.examined.diagnosis,
                 "baselines": case.examined.replies[1..].iter().zip(&BASELINES)
                     .map(|(reply, baseline)| (baseline.name.to_owned(), json!(reply)))
@@ -202,19 +203,30 @@ impl Report {
 
 /// What only the diagnosis states: intervals, how far, how long.
 fn own_scores(cases: &[Judged]) -> Scores {
-    let together = || {
-        cases
-            .iter()
-            .filter(|c| c.truth.is_nameable())
-            .filter_map(|c| c.examined.diagnosis.together.as_ref())
-    };
     vec![
         ("90 % interval holds the truth", Score::share(cases.iter().flat_map(covered))),
-        ("shrink, one step", Score::mean(together().map(|t| t.shrink.one_step))),
-        ("shrink, 5 s", Score::mean(together().map(|t| t.shrink.five_s))),
-        ("shrink, whole run", Score::mean(together().map(|t| t.shrink.run))),
+        ("shrink over oracle, one step", over_oracle(cases, |shrink| shrink.one_step)),
+        ("shrink over oracle, 5 s", over_oracle(cases, |shrink| shrink.five_s)),
+        ("shrink over oracle, whole run", over_oracle(cases, |shrink| shrink.run)),
         ("seconds", Score::mean(cases.iter().map(|case| case.examined.seconds))),
     ]
+}
+
+/// How far the gap shrinks by what was said, over how far it does for who knows the truth: mean over
+/// mean. Where no cause was stood by, nothing shrinks.
+fn over_oracle(cases: &[Judged], horizon: fn(&Shrink) -> f64) -> Score {
+    let pair = |case: &Judged| {
+        let said = case.examined.diagnosis.together.as_ref().map(|t| horizon(&t.shrink));
+        Some((said.unwrap_or(0.0), horizon(case.oracle.as_ref()?)))
+    };
+    let pairs: Vec<(f64, f64)> = cases.iter().filter_map(pair).collect();
+    if pairs.is_empty() {
+        return Score::unsaid();
+    }
+    Score::of(&pairs, |pairs| {
+        let [said, known] = pairs.iter().fold([0.0; 2], |[s, k], (a, b)| [s + a, k + b]);
+        said / known
+    })
 }
 
 /// Whether the verdict is all of the truth and nothing else.

@@ -1,0 +1,42 @@
+//! How far the gap shrinks for who knows the cause: what a diagnosis can reach at best.
+
+use xt28_gap::diagnosis::{Cause, Estimate, HowFar, Inquiry, Shrink};
+use xt28_machine::Machine;
+
+use crate::CheckError;
+use crate::source::Source;
+use crate::truth::{Fact, Truth};
+
+/// The shrink with the true effects at their true scopes, fitted by the same code from the true values
+/// where the catalogue has them. `None` where the truth is in no catalogue.
+///
+/// # Errors
+/// [`CheckError`] for logs that cannot be made, read or replayed.
+pub(crate) fn oracle(source: &Source, truth: &Truth) -> Result<Option<Shrink>, CheckError> {
+    if !truth.is_nameable() {
+        return Ok(None);
+    }
+    let inquiry = Inquiry::new(Machine::xt28(), source.runs()?);
+    let causes: Vec<Cause> = truth.facts.iter().filter_map(cause).collect();
+    Ok(Some(HowFar::new(&inquiry)?.refit(&causes).shrink))
+}
+
+/// A true effect as a cause that one is sure of.
+fn cause(fact: &Fact) -> Option<Cause> {
+    let effect = fact.effect?;
+    let known = |name: &str| fact.parameters.iter().find(|(p, _)| p.name == name);
+    let estimate = |p: &'static xt28_sim::effects::Parameter| {
+        // Another plant's number may be of another quantity: then from one tolerance off neutral.
+        let value = known(p.name).map_or(p.neutral + p.tolerance, |(_, value)| *value);
+        Estimate { name: p.name, value: [value; 3] }
+    };
+    Some(Cause {
+        effect,
+        scope: fact.scope,
+        probability: 1.0,
+        parameters: effect.parameters.iter().map(estimate).collect(),
+        class: vec![effect.name],
+        begins: None,
+        shrink: None,
+    })
+}

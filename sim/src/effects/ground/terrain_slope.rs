@@ -17,19 +17,19 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "terrain-slope",
     block: Block::Ground,
     meaning: "the ground is not as level as assumed",
-    source: "assumed: a yard that looks level leans by up to a degree or two",
+    source: "assumed: a yard that is called level is so within a quarter of a degree",
     parameters: &[
         Parameter {
             name: "grade_x_rad",
             neutral: 0.0,
-            tolerance: 0.02,
+            tolerance: 0.004,
             range: [-0.5, 0.5],
             slot: Slot::Whole(|effects| &mut effects.slope.grade_x_rad),
         },
         Parameter {
             name: "grade_y_rad",
             neutral: 0.0,
-            tolerance: 0.02,
+            tolerance: 0.004,
             range: [-0.5, 0.5],
             slot: Slot::Whole(|effects| &mut effects.slope.grade_y_rad),
         },

@@ -26,12 +26,13 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "payload",
     block: Block::Payload,
     meaning: "load in the bunk",
-    source: "load capacity 14 t of the paper's table; where it lies in the bunk is assumed",
+    source: "load capacity 14 t of the paper's table; where it lies in the bunk is assumed, as are the \
+             200 kg of mud, fuel and tools in a bunk that is called empty",
     parameters: &[
         Parameter {
             name: "mass_kg",
             neutral: 0.0,
-            tolerance: 3000.0,
+            tolerance: 200.0,
             range: [0.0, 14_000.0],
             slot: Slot::Whole(|effects| &mut effects.masses.payload.mass_kg),
         },

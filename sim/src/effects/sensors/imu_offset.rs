@@ -31,19 +31,19 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "imu-offset",
     block: Block::Sensor,
     meaning: "the inertial unit is not mounted level",
-    source: "assumed: brackets are level to half a degree",
+    source: "assumed: brackets are level to a quarter of a degree",
     parameters: &[
         Parameter {
             name: "roll_rad",
             neutral: 0.0,
-            tolerance: 0.009,
+            tolerance: 0.004,
             range: [-0.3, 0.3],
             slot: Slot::Whole(|effects| &mut effects.sensors.imu_offset.roll_rad),
         },
         Parameter {
             name: "pitch_rad",
             neutral: 0.0,
-            tolerance: 0.009,
+            tolerance: 0.004,
             range: [-0.3, 0.3],
             slot: Slot::Whole(|effects| &mut effects.sensors.imu_offset.pitch_rad),
         },

@@ -14,11 +14,11 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "pressure-bias",
     block: Block::Sensor,
     meaning: "a bore pressure sensor reads a constant too much",
-    source: "assumed: 0.5 % of a 400 bar range",
+    source: "assumed: transmitters of 400 bar whose zero is trimmed keep it within half a bar",
     parameters: &[Parameter {
         name: "bias_pa",
         neutral: 0.0,
-        tolerance: 2.0e5,
+        tolerance: 5.0e4,
         range: [-5.0e6, 5.0e6],
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].pressure_bias.bias_pa),
     }],

@@ -14,11 +14,11 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "stroke-bias",
     block: Block::Sensor,
     meaning: "a position sensor reads a constant too much",
-    source: "assumed: zero points are set by hand to a few millimetres",
+    source: "assumed: zero points are set by hand to a millimetre",
     parameters: &[Parameter {
         name: "bias_m",
         neutral: 0.0,
-        tolerance: 0.002,
+        tolerance: 0.001,
         range: [-0.1, 0.1],
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].stroke_bias.bias_m),
     }],

@@ -20,11 +20,11 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "stroke-scale",
     block: Block::Sensor,
     meaning: "a position sensor reads in proportion too much",
-    source: "assumed: linear position sensors are within 1 %",
+    source: "assumed: linear position sensors are within half a percent",
     parameters: &[Parameter {
         name: "factor",
         neutral: 1.0,
-        tolerance: 0.01,
+        tolerance: 0.005,
         range: [0.5, 1.5],
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].stroke_scale.factor),
     }],

@@ -26,12 +26,13 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "soft-tyres",
     block: Block::Tyre,
     meaning: "vertical compliance and damping of the tyres",
-    source: "forestry tyres of 700 mm width: 0.3 to 1 MN/m by load and pressure (textbook)",
+    source: "forestry tyres of 700 mm width: 0.3 to 1 MN/m by load and pressure (textbook); \
+             tolerance assumed, 5 %",
     parameters: &[
         Parameter {
             name: "stiffness_n_m",
             neutral: NEAR_RIGID.stiffness_n_m,
-            tolerance: 3.0e6,
+            tolerance: 4.0e5,
             range: [1.5e5, 2.0e7],
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].soft_tyre.stiffness_n_m
@@ -40,7 +41,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         Parameter {
             name: "damping_n_s_m",
             neutral: NEAR_RIGID.damping_n_s_m,
-            tolerance: 2.0e4,
+            tolerance: 3.0e3,
             range: [0.0, 2.0e5],
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].soft_tyre.damping_n_s_m

@@ -12,6 +12,10 @@ use super::{arms, controllers, driving, joints, position_control, stance, travel
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;
 
+/// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors.
+const STANDING: [&str; 4] =
+    ["imu-offset", "seal-stiction", "standstill-drag", "rolling-resistance"];
+
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Generator {
@@ -57,6 +61,7 @@ pub enum Signal {
     Weight,
     WeightX,
     WeightY,
+    Contact(Wheel),
     WheelSpeed(Wheel),
     TravelSpeed,
     TravelCourse,
@@ -83,11 +88,12 @@ impl Signal {
             Self::SteerOpening => (0.004, 0.5),
             Self::DriveSpeed => (0.025, 0.5),
             Self::DrivePressure => (8.0e5, 0.6),
-            Self::Roll => (0.002, 2.0),
-            Self::Pitch => (0.001, 2.0),
-            Self::Weight => (2.2e3, 1.5),
-            Self::WeightX => (0.02, 4.0),
-            Self::WeightY => (0.015, 3.0),
+            Self::Roll => (0.0007, 5.0),
+            Self::Pitch => (0.0009, 5.0),
+            Self::Weight => (900.0, 3.0),
+            Self::WeightX => (0.010, 5.0),
+            Self::WeightY => (0.008, 5.0),
+            Self::Contact(_) => (0.5e-3, 3.0),
             Self::WheelSpeed(_) => (0.05, 2.0),
             Self::TravelSpeed => (0.012, 1.5),
             Self::TravelCourse => (0.03, 1.5),
@@ -138,8 +144,9 @@ impl Generator {
             }
             Self::Stance => {
                 matches!(effect.block, Block::Payload | Block::Ground | Block::Tyre)
-                    || ["stroke-bias", "stroke-scale", "imu-offset"].contains(&name)
+                    || STANDING.contains(&name)
                     || name.starts_with("pressure-")
+                    || name.starts_with("stroke-")
             }
             Self::Travel => {
                 ["slippery-ground", "wheel-speed-scale"].contains(&name)
@@ -176,6 +183,11 @@ impl Generator {
             signal,
             values: thin(&raw, signal.floor().sigma),
         };
+        let thinned = |signal: Signal, raw: Samples| {
+            let sigma = signal.floor().sigma;
+            let values = raw.into_iter().map(|value| value / sigma).collect();
+            Residual { generator: self, signal, values }
+        };
         match self {
             Self::ArmStroke(w) => {
                 vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, effects, w))]
@@ -200,13 +212,16 @@ impl Generator {
             }
             Self::Stance => {
                 let e = stance::stance_errors(s, machine, effects);
-                vec![
-                    one(Signal::Roll, e.roll_rad),
-                    one(Signal::Pitch, e.pitch_rad),
-                    one(Signal::Weight, e.weight_n),
-                    one(Signal::WeightX, e.weight_x_m),
-                    one(Signal::WeightY, e.weight_y_m),
-                ]
+                let mut all = vec![
+                    thinned(Signal::Roll, e.roll_rad),
+                    thinned(Signal::Pitch, e.pitch_rad),
+                    thinned(Signal::Weight, e.weight_n),
+                    thinned(Signal::WeightX, e.weight_x_m),
+                    thinned(Signal::WeightY, e.weight_y_m),
+                ];
+                let feet = e.contact_m.0.into_iter().zip(Wheel::ALL);
+                all.extend(feet.map(|(raw, w)| thinned(Signal::Contact(w), raw)));
+                all
             }
             Self::Travel => {
                 let e = travel::travel_errors(s, machine, effects);

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 use xt28_ecus::pins;
-use xt28_machine::{PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::Terrain;
 
+use super::stance::{Instant, instants};
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 
 /// Time series by channel, as logs and replays have them.
@@ -65,6 +67,8 @@ pub struct Signals {
     pub fixes: Vec<[f64; 3]>,
     /// Heading with its rate at those instants: rad, unwound, counter-clockwise from east; rad/s.
     pub headings: Vec<[f64; 2]>,
+    /// Made of the above when first asked for.
+    instants: OnceLock<Vec<Instant>>,
 }
 
 impl Signals {
@@ -141,6 +145,7 @@ impl Signals {
             pitch_rad: sample(Channel::Pitch),
             fixes: fixes(series),
             headings: headings(series),
+            instants: OnceLock::new(),
         })
     }
 
@@ -154,6 +159,12 @@ impl Signals {
         let share = (at_s - self.fixes[k - 1][0]) / (self.fixes[k][0] - self.fixes[k - 1][0]);
         let ([a, _], [b, rate]) = (self.headings[k - 1], self.headings[k]);
         Some([a + share * (b - a), rate])
+    }
+
+    /// The instants at which the stance is judged. They need of a machine only where its axles and
+    /// joints are, how large its wheels are and which pump drives which; no knob turns those.
+    pub(super) fn instants(&self, machine: &Machine) -> &[Instant] {
+        self.instants.get_or_init(|| instants(self, machine))
     }
 
     /// Length of the run, s.

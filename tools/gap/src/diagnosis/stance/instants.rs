@@ -1,0 +1,133 @@
+//! The instants at which a machine's stance is judged, with all that a log says of each.
+
+use xt28_machine::{Machine, PerWheel};
+
+use super::motion::{Motion, lagged};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
+
+/// Time constant of the filter through which the ECU sees pressures, s: 0.94088 a tick (facts 3.2).
+pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
+/// Samples of the log from one instant to the next, half a second: a stance changes slowly.
+const STRIDE: usize = 50;
+/// Turn of a wheel over which what holds it builds up, rad (assumed: 7 mm at the rim).
+const YIELDS_RAD: f64 = 0.01;
+/// Pump pressure at the largest wheel torque, Pa.
+const FULL_PRESSURE_PA: f64 = 350.0e5;
+
+/// What a log says of one instant. Strokes, joints, speeds and angles are taken through the filter
+/// that makes the loads late, so that they are all of one moment.
+#[derive(Clone, Debug)]
+pub(in crate::diagnosis) struct Instant {
+    /// Sample of the log.
+    pub(super) sample: usize,
+    /// Whether the machine neither gains nor loses speed.
+    pub(super) is_calm: bool,
+    /// Front and rear joint, rad.
+    pub(super) joint_rad: [f64; 2],
+    /// Roll and pitch read, less what the filter feels of the motion, rad.
+    pub(super) attitude_rad: [f64; 2],
+    /// Acceleration to the left and forward, m/s².
+    pub(super) acceleration_m_s2: [f64; 2],
+    /// Heading, counter-clockwise from east, rad.
+    pub(super) heading_rad: f64,
+    /// What it says of each wheel.
+    pub(super) wheels: PerWheel<AtWheel>,
+}
+
+/// What a log says of one wheel at one instant.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct AtWheel {
+    /// Stroke as read, m.
+    pub(super) stroke_m: f64,
+    /// Load of the cylinder as read, N.
+    pub(super) load_n: f64,
+    /// Motor torque that the circuit's pressures make, forward, Nm.
+    pub(super) torque_nm: f64,
+    /// Which way what resists the wheel's turning acts, -1 to 1: against its last turn.
+    pub(super) held: f64,
+    /// The same while the machine is asked to stand, zero while it is asked to travel.
+    pub(super) held_idle: f64,
+}
+
+/// The instants of a run.
+pub(in crate::diagnosis) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
+    let motion = Motion::new(s, machine);
+    let late = |samples: &Samples| lagged(samples.iter().copied(), PRESSURE_FILTER_S);
+    let still = |reading: &Samples, felt: &Samples| {
+        lagged(reading.iter().zip(felt).map(|(r, f)| r - f), PRESSURE_FILTER_S)
+    };
+    let joint = [late(&s.joint_rad[0]), late(&s.joint_rad[1])];
+    let attitude = [still(&s.roll_rad, &motion.felt_rad[0]), still(&s.pitch_rad, &motion.felt_rad[1])];
+    let acceleration = [late(&motion.left_m_s2), late(&motion.ahead_m_s2)];
+    let heading = headings(s, &motion);
+    let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
+    (STRIDE / 2..s.len)
+        .step_by(STRIDE)
+        .map(|i| Instant {
+            sample: i,
+            is_calm: motion.is_calm[i],
+            joint_rad: [joint[0][i], joint[1][i]],
+            attitude_rad: [attitude[0][i], attitude[1][i]],
+            acceleration_m_s2: [acceleration[0][i], acceleration[1][i]],
+            heading_rad: heading[i],
+            wheels: PerWheel::from_fn(|w| wheels[w](i)),
+        })
+        .collect()
+}
+
+/// Values at the instants, each held until the next, ten a second over a run of `len` samples.
+pub(super) fn held_between(values: &[f64], len: usize) -> Samples {
+    (0..len / 10).map(|k| values.get(k * 10 / STRIDE).copied().unwrap_or(f64::NAN)).collect()
+}
+
+fn wheel_samples(
+    s: &Signals,
+    machine: &Machine,
+    wheel: xt28_machine::Wheel,
+) -> impl Fn(usize) -> AtWheel {
+    let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
+    let stroke_m = late(s.stroke_m[wheel].clone());
+    let load_n = s.cylinder_load_n[wheel].clone();
+    let torque_nm = late(pump_torque_nm(s, machine, wheel));
+    let held = held(&s.wheel_speed_rad_s[wheel]);
+    let idle = held.iter().zip(&s.throttle).map(|(held, asked)| if *asked == 0.0 { *held } else { 0.0 });
+    let held_idle = late(idle.collect());
+    let held = late(held);
+    move |i| AtWheel {
+        stroke_m: stroke_m[i],
+        load_n: load_n[i],
+        torque_nm: torque_nm[i],
+        held: held[i],
+        held_idle: held_idle[i],
+    }
+}
+
+/// Torque of the wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
+fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: xt28_machine::Wheel) -> Samples {
+    let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
+    let [back, forward] = if first { [0, 1] } else { [2, 3] };
+    let (back, forward) = (&s.pump_pressure_pa[back], &s.pump_pressure_pa[forward]);
+    let full = machine.wheels.torque_max_nm / FULL_PRESSURE_PA;
+    forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
+}
+
+/// Which way a wheel is held, -1 to 1: what resists yields a little before it slips.
+fn held(speed_rad_s: &Samples) -> Samples {
+    let mut turn = 0.0_f64;
+    let step = |speed: &f64| {
+        turn = (turn + speed * DT_S / YIELDS_RAD).clamp(-1.0, 1.0);
+        turn
+    };
+    speed_rad_s.iter().map(step).collect()
+}
+
+/// Heading by the receiver, by wheels and joints where it says none, rad.
+#[allow(clippy::cast_precision_loss)]
+fn headings(s: &Signals, motion: &Motion) -> Samples {
+    let mut turned = s.headings.first().map_or(0.0, |heading| heading[0]);
+    let step = |(i, rate): (usize, &f64)| {
+        turned += rate * DT_S;
+        s.heading_at(i as f64 * DT_S).map_or(turned, |[heading, _]| heading)
+    };
+    motion.turn_rad_s.iter().enumerate().map(step).collect()
+}

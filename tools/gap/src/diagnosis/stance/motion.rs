@@ -1,0 +1,85 @@
+//! How the machine moves while it stands on its wheels, and what its inertial unit makes of that.
+
+use xt28_machine::{GRAVITY_M_S2, Machine};
+use xt28_sim::effects::Lag;
+
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
+
+/// Time constants of the firmware's complementary filter, s: 0.995 and 0.99 a tick (facts 5).
+const ROLL_FILTER_S: f64 = 2.0;
+const PITCH_FILTER_S: f64 = 1.0;
+/// Half of the time over which speeds give an acceleration and joints a rate, samples.
+const HALF_SPAN: usize = 10;
+/// Acceleration from which a machine is said to change its speed, m/s².
+const CALM_M_S2: f64 = 0.05;
+/// Samples until the machine has stopped rocking after that: one second.
+const ROCKING: usize = 100;
+
+/// Motion over the ground, a hundred samples a second.
+pub(super) struct Motion {
+    /// Forward acceleration, m/s².
+    pub(super) ahead_m_s2: Samples,
+    /// Acceleration to the left in a bend, m/s².
+    pub(super) left_m_s2: Samples,
+    /// Roll and pitch that the filter reads because of them, rad.
+    pub(super) felt_rad: [Samples; 2],
+    /// Yaw rate of the front frame, left > 0, rad/s.
+    pub(super) turn_rad_s: Samples,
+    /// Whether the machine neither gains nor loses speed, nor did so just now.
+    pub(super) is_calm: Vec<bool>,
+}
+
+impl Motion {
+    /// Motion that wheel speeds and joints say.
+    pub(super) fn new(s: &Signals, machine: &Machine) -> Self {
+        let speed: Samples =
+            (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m).collect();
+        let ahead_m_s2 = slope(&speed);
+        let turn_rad_s = turn_rates(s, machine, &speed);
+        let left_m_s2: Samples = speed.iter().zip(&turn_rad_s).map(|(v, r)| v * r).collect();
+        // Ahead tips the reading nose up, to the left tips it left side high.
+        let felt_rad = [
+            lagged(left_m_s2.iter().map(|a| -a / GRAVITY_M_S2), ROLL_FILTER_S),
+            lagged(ahead_m_s2.iter().map(|a| a / GRAVITY_M_S2), PITCH_FILTER_S),
+        ];
+        let mut rocking = 0;
+        let is_calm = ahead_m_s2.iter().map(|a| {
+            rocking = if a.abs() > CALM_M_S2 { ROCKING } else { rocking.saturating_sub(1) };
+            rocking == 0
+        });
+        let is_calm = is_calm.collect();
+        Self { ahead_m_s2, left_m_s2, felt_rad, turn_rad_s, is_calm }
+    }
+}
+
+/// Yaw rates of the front frame, rad/s: two frames that roll without side slip about their joint.
+fn turn_rates(s: &Signals, machine: &Machine, speed_m_s: &Samples) -> Samples {
+    let joint_x = machine.articulation.front_joint_x_m;
+    let ahead_m = machine.wheels.axle_x_m[0] - joint_x;
+    let behind_m = joint_x - machine.wheels.axle_x_m[1];
+    let rate = slope(&s.joint_rad[0]);
+    (0..s.len)
+        .map(|i| {
+            let (sin, cos) = s.joint_rad[0][i].sin_cos();
+            (speed_m_s[i] * sin + behind_m * rate[i]) / (ahead_m * cos + behind_m)
+        })
+        .collect()
+}
+
+/// Central differences.
+#[allow(clippy::cast_precision_loss)]
+fn slope(samples: &Samples) -> Samples {
+    let end = samples.len().saturating_sub(1);
+    let at = |i: usize| {
+        let (from, to) = (i.saturating_sub(HALF_SPAN), (i + HALF_SPAN).min(end));
+        (samples[to] - samples[from]) / ((to - from).max(1) as f64 * DT_S)
+    };
+    (0..samples.len()).map(at).collect()
+}
+
+/// `samples` through a first-order lag that starts settled on the first.
+pub(super) fn lagged(samples: impl Iterator<Item = f64>, time_constant_s: f64) -> Samples {
+    let mut lag: Option<Lag> = None;
+    let step = |value| lag.get_or_insert(Lag::new(value)).step(value, time_constant_s, DT_S);
+    samples.map(step).collect()
+}

@@ -16,7 +16,8 @@ pub(super) use instants::{Instant, instants};
 use layout::{Layout, Reach};
 use plane::{Foot, Plane};
 
-/// Standing errors over a run, ten a second; `NaN` where nothing can be said.
+/// Standing errors over a run, ten a second; `NaN` where nothing can be said. Attitude and weight are
+/// taken for less while arms move.
 #[derive(Clone, Debug)]
 pub(super) struct StanceErrors {
     /// Roll that the strokes say less the roll measured, rad.
@@ -105,7 +106,12 @@ fn judge(
         * (parts.frames.iter().map(|f| f.mass_kg).sum::<f64>()
             + 6.0 * parts.wheel.mass_kg
             + parts.arms.iter().map(|(_, a)| a.body.mass_kg).sum::<f64>());
-    Some(Error { attitude_rad, weight: weigh(&feet, &layout, plane, lean, weight_n), contact_m })
+    let weight = weigh(&feet, &layout, plane, parts.radius_m, lean, weight_n);
+    Some(Error {
+        attitude_rad: attitude_rad.map(|error| error / instant.doubt),
+        weight: weight.map(|error| error / instant.doubt),
+        contact_m,
+    })
 }
 
 /// Slope of the ground forward and to the left of a machine that heads to `heading_rad`, rad.
@@ -118,21 +124,21 @@ fn grade_rad(effects: &Effects, heading_rad: f64) -> [f64; 2] {
 /// Weight less what the wheels carry, N, and where it should act less where they say, m.
 ///
 /// The weight meets the ground below the middle of all masses along the plumb line, which leans in the
-/// machine's axes by `lean` (to the left, forward). A slope needs no more than that.
+/// machine's axes by `lean` (to the left, forward). A slope needs no more than that. A round wheel of
+/// a leaning machine touches beside the point that is lowest in the machine's axes.
 fn weigh(
     feet: &PerWheel<Foot>,
     layout: &Layout,
     plane: Plane,
+    radius_m: f64,
     [left, ahead]: [f64; 2],
     weight_n: f64,
 ) -> [f64; 3] {
     let (mut sum_n, mut moment) = (0.0, [0.0; 2]);
+    let aside_m = [radius_m * plane.slope_x, radius_m * plane.slope_y];
     for (_, foot) in feet.iter() {
         sum_n += foot.normal_n;
-        moment = [
-            moment[0] + foot.normal_n * foot.at_m[0],
-            moment[1] + foot.normal_n * foot.at_m[1],
-        ];
+        moment = [0, 1].map(|k| moment[k] + foot.normal_n * (foot.at_m[k] + aside_m[k]));
     }
     let [x, y, z] = layout.com_m;
     let high_m = z - plane.height_m([x, y]);

@@ -50,19 +50,17 @@ impl<'a> Carrier<'a> {
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
     /// `drop + radius` below the pivot: the motor's torque is between wheel and arm.
     pub(super) fn at(&self, instant: &Instant) -> (Reach, f64) {
-        let AtWheel { stroke_m, load_n, torque_nm, held, held_idle } = instant.wheels[self.wheel];
+        let AtWheel { stroke_m, load_n, torque_nm, rolls, held } = instant.wheels[self.wheel];
         let e = &self.effects.wheels[self.wheel];
         let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
         let oil_n = (load_n - e.pressure_bias.bias_pa * self.area_m2) / e.pressure_scale.factor;
         let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
-        let drive_nm = torque_nm - held_idle * e.standstill_drag.torque_nm;
+        let drive_nm = torque_nm - held * e.standstill_drag.torque_nm;
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
-        let below_m =
-            self.parts.arms[self.wheel].extends * (pose.drop_m + radius_m) / radius_m;
-        let moment_nm =
-            self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * drive_nm;
-        let normal_n = moment_nm / (pose.reach_m - below_m * held * self.resistance_m);
+        let below_m = self.parts.arms[self.wheel].extends * (pose.drop_m + radius_m) / radius_m;
+        let moment_nm = self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * drive_nm;
+        let normal_n = moment_nm / (pose.reach_m - below_m * rolls * self.resistance_m);
         (Reach { reach_m: pose.reach_m, drop_m: pose.drop_m }, normal_n)
     }
 }

@@ -9,8 +9,13 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
 /// Samples of the log from one instant to the next, half a second: a stance changes slowly.
 const STRIDE: usize = 50;
-/// Turn of a wheel over which what holds it builds up, rad (assumed: 7 mm at the rim).
-const YIELDS_RAD: f64 = 0.01;
+/// Turn of a wheel over which an idle motor's hold builds up, rad (assumed: 2 mm at the rim).
+const YIELDS_RAD: f64 = 0.003;
+/// Speed over which rolling resistance fades in, rad/s: 5 cm/s at the rim (assumed).
+const FADES_RAD_S: f64 = 0.07;
+/// Stroke rate at which an instant is twice as doubtful as one at rest, m/s, and how long that lasts, s.
+const DOUBT_M_S: f64 = 0.02;
+const DOUBT_S: f64 = 1.0;
 /// Pump pressure at the largest wheel torque, Pa.
 const FULL_PRESSURE_PA: f64 = 350.0e5;
 
@@ -22,6 +27,8 @@ pub(in crate::diagnosis) struct Instant {
     pub(super) sample: usize,
     /// Whether the machine neither gains nor loses speed.
     pub(super) is_calm: bool,
+    /// How many times as doubtful as at rest what is said of attitude and weight is.
+    pub(super) doubt: f64,
     /// Front and rear joint, rad.
     pub(super) joint_rad: [f64; 2],
     /// Roll and pitch read, less what the filter feels of the motion, rad.
@@ -43,10 +50,11 @@ pub(super) struct AtWheel {
     pub(super) load_n: f64,
     /// Motor torque that the circuit's pressures make, forward, Nm.
     pub(super) torque_nm: f64,
-    /// Which way what resists the wheel's turning acts, -1 to 1: against its last turn.
+    /// Share of the rolling resistance that acts, -1 to 1: against the wheel's turning.
+    pub(super) rolls: f64,
+    /// Share of an idle motor's hold that acts, -1 to 1: against the wheel's last turn; zero while the
+    /// machine is asked to travel.
     pub(super) held: f64,
-    /// The same while the machine is asked to stand, zero while it is asked to travel.
-    pub(super) held_idle: f64,
 }
 
 /// The instants of a run.
@@ -57,15 +65,17 @@ pub(in crate::diagnosis) fn instants(s: &Signals, machine: &Machine) -> Vec<Inst
         lagged(reading.iter().zip(felt).map(|(r, f)| r - f), PRESSURE_FILTER_S)
     };
     let joint = [late(&s.joint_rad[0]), late(&s.joint_rad[1])];
-    let attitude = [still(&s.roll_rad, &motion.felt_rad[0]), still(&s.pitch_rad, &motion.felt_rad[1])];
+    let attitude =
+        [still(&s.roll_rad, &motion.felt_rad[0]), still(&s.pitch_rad, &motion.felt_rad[1])];
     let acceleration = [late(&motion.left_m_s2), late(&motion.ahead_m_s2)];
-    let heading = headings(s, &motion);
+    let (heading, doubt) = (headings(s, &motion), doubts(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
     (STRIDE / 2..s.len)
         .step_by(STRIDE)
         .map(|i| Instant {
             sample: i,
             is_calm: motion.is_calm[i],
+            doubt: doubt[i],
             joint_rad: [joint[0][i], joint[1][i]],
             attitude_rad: [attitude[0][i], attitude[1][i]],
             acceleration_m_s2: [acceleration[0][i], acceleration[1][i]],
@@ -89,16 +99,15 @@ fn wheel_samples(
     let stroke_m = late(s.stroke_m[wheel].clone());
     let load_n = s.cylinder_load_n[wheel].clone();
     let torque_nm = late(pump_torque_nm(s, machine, wheel));
-    let held = held(&s.wheel_speed_rad_s[wheel]);
-    let idle = held.iter().zip(&s.throttle).map(|(held, asked)| if *asked == 0.0 { *held } else { 0.0 });
-    let held_idle = late(idle.collect());
-    let held = late(held);
+    let speed_rad_s = &s.wheel_speed_rad_s[wheel];
+    let rolls = late(speed_rad_s.iter().map(|speed| (speed / FADES_RAD_S).tanh()).collect());
+    let held = late(held(speed_rad_s, &s.throttle));
     move |i| AtWheel {
         stroke_m: stroke_m[i],
         load_n: load_n[i],
         torque_nm: torque_nm[i],
+        rolls: rolls[i],
         held: held[i],
-        held_idle: held_idle[i],
     }
 }
 
@@ -111,14 +120,25 @@ fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: xt28_machine::Wheel) ->
     forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
 }
 
-/// Which way a wheel is held, -1 to 1: what resists yields a little before it slips.
-fn held(speed_rad_s: &Samples) -> Samples {
+/// Which way an idle motor holds its wheel, -1 to 1: it yields a little before it slips.
+fn held(speed_rad_s: &Samples, throttle: &Samples) -> Samples {
     let mut turn = 0.0_f64;
-    let step = |speed: &f64| {
+    let step = |(speed, asked): (&f64, &f64)| {
         turn = (turn + speed * DT_S / YIELDS_RAD).clamp(-1.0, 1.0);
-        turn
+        if *asked == 0.0 { turn } else { 0.0 }
     };
-    speed_rad_s.iter().map(step).collect()
+    speed_rad_s.iter().zip(throttle).map(step).collect()
+}
+
+/// How many times as doubtful as at rest each sample is: arms that move shake the machine.
+fn doubts(s: &Signals) -> Samples {
+    let mut shaken = 0.0_f64;
+    let step = |i: usize| {
+        let fastest = s.stroke_rate_m_s.iter().map(|(_, rate)| rate[i].abs()).fold(0.0, f64::max);
+        shaken = fastest.max(shaken * (-DT_S / DOUBT_S).exp());
+        1.0 + shaken / DOUBT_M_S
+    };
+    (0..s.len).map(step).collect()
 }
 
 /// Heading by the receiver, by wheels and joints where it says none, rad.

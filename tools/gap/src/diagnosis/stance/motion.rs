@@ -1,7 +1,8 @@
 //! How the machine moves while it stands on its wheels, and what its inertial unit makes of that.
 
-use xt28_machine::{GRAVITY_M_S2, Machine};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
+use xt28_sim::{Effects, Parts};
 
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -11,7 +12,9 @@ const PITCH_FILTER_S: f64 = 1.0;
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
 const HALF_SPAN: usize = 10;
 /// Acceleration from which a machine is said to change its speed, m/s².
-const CALM_M_S2: f64 = 0.05;
+const CALM_M_S2: f64 = 0.1;
+/// A cylinder that carries less may have its wheel in the air, N.
+const CARRYING_N: f64 = 5_000.0;
 /// Samples until the machine has stopped rocking after that: one second.
 const ROCKING: usize = 100;
 
@@ -32,8 +35,7 @@ pub(super) struct Motion {
 impl Motion {
     /// Motion that wheel speeds and joints say.
     pub(super) fn new(s: &Signals, machine: &Machine) -> Self {
-        let speed: Samples =
-            (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m).collect();
+        let speed = speeds(s, machine);
         let ahead_m_s2 = slope(&speed);
         let turn_rad_s = turn_rates(s, machine, &speed);
         let left_m_s2: Samples = speed.iter().zip(&turn_rad_s).map(|(v, r)| v * r).collect();
@@ -50,6 +52,30 @@ impl Motion {
         let is_calm = is_calm.collect();
         Self { ahead_m_s2, left_m_s2, felt_rad, turn_rad_s, is_calm }
     }
+}
+
+/// Speed of the frames, m/s: what the wheels on the ground roll, less the swing of their arms.
+fn speeds(s: &Signals, machine: &Machine) -> Samples {
+    let parts = Parts::new(machine, &Effects::default());
+    let swings = PerWheel::from_fn(|w| {
+        let reach = s.stroke_m[w].iter().map(|stroke| parts.linkage.at_stroke(*stroke).reach_m);
+        slope(&reach.collect())
+    });
+    let mut last = 0.0;
+    let step = |i: usize| {
+        let carries = |w: &Wheel| s.cylinder_load_n[*w][i] > CARRYING_N;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for w in Wheel::ALL.into_iter().filter(carries) {
+            let rolls_m_s = s.wheel_speed_rad_s[w][i] * parts.radius_m;
+            sum += rolls_m_s - parts.arms[w].extends * swings[w][i];
+            count += 1.0;
+        }
+        if count > 0.0 {
+            last = sum / count;
+        }
+        last
+    };
+    (0..s.len).map(step).collect()
 }
 
 /// Yaw rates of the front frame, rad/s: two frames that roll without side slip about their joint.

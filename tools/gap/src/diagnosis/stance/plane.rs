@@ -37,9 +37,8 @@ impl Plane {
         let mut standing = PerWheel::from_fn(|w| feet[w].normal_n > STANDING_N);
         let mut plane = Self::fit(feet, &standing)?;
         for _ in 0..ROUNDS {
-            let next = PerWheel::from_fn(|w| {
-                plane.gap_m(&feet[w]) < feet[w].normal_n * GAP_PER_FORCE_M_N
-            });
+            let next =
+                PerWheel::from_fn(|w| plane.gap_m(&feet[w]) < feet[w].normal_n * GAP_PER_FORCE_M_N);
             if next == standing {
                 break;
             }

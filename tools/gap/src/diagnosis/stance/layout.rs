@@ -30,10 +30,10 @@ impl Chain {
     /// Turns the frames behind about their joints: a bend to the left turns them to the right.
     fn new(parts: &Parts, joint_rad: [f64; 2]) -> Self {
         let mut chain = Self { origin_m: [[0.0; 2]; 3], heading_rad: [0.0; 3] };
-        for k in 0..2 {
+        for (k, bend) in joint_rad.into_iter().enumerate() {
             let at_x = parts.joint_m[k][0];
             let joint = chain.place(k, [at_x, 0.0]);
-            let heading = chain.heading_rad[k] - joint_rad[k];
+            let heading = chain.heading_rad[k] - bend;
             let (sin, cos) = heading.sin_cos();
             chain.heading_rad[k + 1] = heading;
             chain.origin_m[k + 1] = [joint[0] - cos * at_x, joint[1] - sin * at_x];

@@ -75,7 +75,22 @@ impl<'a> Evidence<'a> {
     /// Where a residual is not a number under the nominal machine.
     #[must_use]
     pub fn new(runs: &'a [Signals], machine: &Machine, base: Effects, knobs: &[Knob]) -> Self {
-        let watches: Vec<Watch> = Generator::all()
+        Self::watching(Generator::all(), runs, machine, base, knobs)
+    }
+
+    /// The same for some `generators` only.
+    ///
+    /// # Panics
+    /// Where a residual is not a number under the nominal machine.
+    #[must_use]
+    pub fn watching(
+        generators: Vec<Generator>,
+        runs: &'a [Signals],
+        machine: &Machine,
+        base: Effects,
+        knobs: &[Knob],
+    ) -> Self {
+        let watches: Vec<Watch> = generators
             .into_par_iter()
             .map(|generator| Watch::new(generator, runs, machine, &base, knobs))
             .collect();

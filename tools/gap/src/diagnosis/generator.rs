@@ -276,6 +276,7 @@ impl fmt::Display for Signal {
             Self::Weight => "weight",
             Self::WeightX => "place of the weight, forward",
             Self::WeightY => "place of the weight, left",
+            Self::Contact(_) => "touch of the ground",
             Self::WheelSpeed(_) => "wheel speed",
             Self::TravelSpeed => "speed over ground",
             Self::TravelCourse => "course over ground",

@@ -41,7 +41,8 @@ pub(super) fn descend(
             }
         }
         let settled = steps.iter().zip(parameters).all(|(s, p)| *s < 0.02 * p.tolerance);
-        if before.cost - end.cost < GAIN_MIN && (settled || before.at == end.at) {
+        // A round that goes nowhere has only shown that its steps were too long.
+        if before.cost - end.cost < GAIN_MIN && settled {
             break;
         }
     }

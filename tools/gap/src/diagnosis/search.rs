@@ -114,8 +114,21 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
                 grid.push(values);
             }
         }
+        grid.extend(fractions(parameters, k));
     }
     grid
+}
+
+/// What can only be positive may be a fraction of itself, far beyond its tolerances: a tyre's stiffness.
+fn fractions(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
+    let Parameter { neutral, range: [least, _], tolerance, .. } = parameters[k];
+    let fraction = |share: f64| {
+        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        values[k] *= (least / neutral).powf(share);
+        values
+    };
+    let far = least > 0.0 && neutral - least > 10.0 * tolerance;
+    if far { [0.3, 0.5, 0.7, 0.85].map(fraction).to_vec() } else { Vec::new() }
 }
 
 #[cfg(test)]

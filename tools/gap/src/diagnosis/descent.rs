@@ -24,36 +24,50 @@ pub(super) fn descend(
     start: Vec<f64>,
     parameters: &[Parameter],
 ) -> End {
-    let mut steps: Vec<f64> = parameters.iter().zip(&start).map(first_step).collect();
+    let mut directions = axes(parameters, &start);
     let mut end = End { cost: cost(&start), at: start };
     for _ in 0..ROUNDS {
         let before = end.clone();
-        for (k, step) in steps.iter_mut().enumerate() {
-            let mut direction = vec![0.0; parameters.len()];
-            direction[k] = *step;
-            let moved = line(cost, &mut end, &direction, parameters);
-            *step *= moved.abs().clamp(0.2, 3.0);
-        }
-        if steps.len() > 1 {
-            let along: Vec<f64> = end.at.iter().zip(&before.at).map(|(a, b)| a - b).collect();
-            if along.iter().any(|by| *by != 0.0) {
-                line(cost, &mut end, &along, parameters);
+        let (mut most, mut steepest) = (0.0, 0);
+        for (k, direction) in directions.iter_mut().enumerate() {
+            let from = end.cost;
+            let moved = line(cost, &mut end, direction, parameters);
+            direction.iter_mut().for_each(|by| *by *= moved.abs().clamp(0.2, 3.0));
+            if from - end.cost > most {
+                (most, steepest) = (from - end.cost, k);
             }
         }
-        let settled = steps.iter().zip(parameters).all(|(s, p)| *s < 0.02 * p.tolerance);
+        let along: Vec<f64> = end.at.iter().zip(&before.at).map(|(a, b)| a - b).collect();
+        if directions.len() > 1 && along.iter().any(|by| *by != 0.0) {
+            let mut far = along.clone();
+            while line(cost, &mut end, &far, parameters).abs() >= REACH {
+                far.iter_mut().for_each(|by| *by *= REACH);
+            }
+            // Powell (1964): where a round went is a better axis than the one that gave it most.
+            directions[steepest] = along;
+        }
+        let short = |direction: &Vec<f64>| {
+            direction.iter().zip(parameters).all(|(by, p)| by.abs() < 0.02 * p.tolerance)
+        };
         // A round that goes nowhere has only shown that its steps were too long.
-        if before.cost - end.cost < GAIN_MIN && settled {
+        if before.cost - end.cost < GAIN_MIN && directions.iter().all(short) {
             break;
         }
     }
     end
 }
 
-/// A tolerance, or a fifth of what is there; half way to the end of the range where that is nearer.
-fn first_step((p, value): (&Parameter, &f64)) -> f64 {
-    let step = p.tolerance.max(0.2 * (value - p.neutral).abs());
-    let room = p.range.map(|end| 0.5 * (value - end).abs());
-    room.into_iter().filter(|room| *room > 0.0).fold(step, f64::min)
+/// One step along each parameter: its tolerance, or a fifth of how far it is from neutral; half way to
+/// the end of its range where that is nearer.
+fn axes(parameters: &[Parameter], start: &[f64]) -> Vec<Vec<f64>> {
+    let axis = |(k, (p, v)): (usize, (&Parameter, &f64))| {
+        let mut axis = vec![0.0; parameters.len()];
+        let step = p.tolerance.max(0.2 * (v - p.neutral).abs());
+        let room = p.range.map(|end| 0.5 * (v - end).abs());
+        axis[k] = room.into_iter().filter(|room| *room > 0.0).fold(step, f64::min);
+        axis
+    };
+    parameters.iter().zip(start).enumerate().map(axis).collect()
 }
 
 /// One parabola along `direction`; how many of it the end moved.

@@ -9,6 +9,8 @@
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
 mod arms;
+mod axles;
+mod bus;
 mod candidates;
 mod controllers;
 mod descent;
@@ -29,6 +31,8 @@ mod places;
 mod position_control;
 mod pump;
 mod regime;
+mod rolling;
+mod scrub;
 mod search;
 mod signals;
 mod stack;

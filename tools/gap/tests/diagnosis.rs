@@ -1,9 +1,10 @@
 //! Diagnosis on logs of a second plant, and on what our own plant does with an effect put in.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals, search};
-use xt28_gap::{About, Decoder, FieldLog, Mapping, Replay, Terrain};
+use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Series, Terrain};
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::{CATALOGUE, Overlay, Scope};
 use xt28_sim::{Effects, Solver};
@@ -66,6 +67,17 @@ fn leaking_front_arms_show_on_the_front_arms() {
 
 /// The commands of a field log on our own plant with an effect: the fit must find its size.
 fn fitted(effect: &str, scope: Scope, run: &str, overlay: &str) -> Option<(f64, Vec<f64>)> {
+    fitted_after(effect, scope, run, overlay, |_| ())
+}
+
+/// The same on what is left of a log after `spoil`.
+fn fitted_after(
+    effect: &str,
+    scope: Scope,
+    run: &str,
+    overlay: &str,
+    spoil: impl Fn(&mut BTreeMap<Channel, Series>),
+) -> Option<(f64, Vec<f64>)> {
     let folder = field_data()?.join("aux/nominal");
     let (log, terrain) = log(&folder, run);
     let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
@@ -77,6 +89,7 @@ fn fitted(effect: &str, scope: Scope, run: &str, overlay: &str) -> Option<(f64, 
             series.insert(*channel, samples.clone());
         }
     }
+    spoil(&mut series);
     let signals = Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap();
     let runs = [signals];
     let evidence = Evidence::new(&runs, &machine, Effects::default(), &Knob::all());
@@ -109,4 +122,61 @@ fn a_late_throttle_put_into_our_plant_is_found_with_its_size() {
     };
     assert!(evidence > 20.0, "{evidence}");
     assert!((values[0] - 0.3).abs() < 0.06, "{values:?}");
+}
+
+#[test]
+fn late_steering_is_told_from_slow_steering() {
+    let overlay = "[[effect]]\nname = \"steer-delay\"\ndelay_s = 0.3";
+    let Some((evidence, values)) =
+        fitted("steer-delay", Scope::All, "run-3-s_turn.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 20.0, "{evidence}");
+    assert!((values[0] - 0.3).abs() < 0.06, "{values:?}");
+}
+
+#[test]
+fn a_weak_and_late_follower_is_found_in_the_rear_controller() {
+    let overlay = "[[effect]]\nname = \"rear-follower-lag\"\ntime_constant_s = 0.8\n\
+                   ratio_factor = 0.75";
+    let Some((evidence, values)) =
+        fitted("rear-follower-lag", Scope::All, "run-3-s_turn.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 20.0, "{evidence}");
+    assert!((values[0] - 0.8).abs() < 0.1 && (values[1] - 0.75).abs() < 0.03, "{values:?}");
+}
+
+#[test]
+fn the_wheel_that_misreads_is_told_by_the_others() {
+    let middle_right = Scope::Wheel(Wheel::Mr);
+    let overlay = "[[effect]]\nname = \"wheel-speed-scale\"\nscope = \"MR\"\nfactor = 0.93";
+    let Some((evidence, values)) =
+        fitted("wheel-speed-scale", middle_right, "run-4-straight.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 10.0, "{evidence}");
+    assert!((values[0] - 0.93).abs() < 0.015, "{values:?}");
+}
+
+/// Commands that are not in the log did not reach the ECUs.
+#[test]
+fn lost_commands_are_counted_and_taken_for_nothing_else() {
+    let lose = |series: &mut BTreeMap<Channel, Series>| {
+        for (channel, samples) in series {
+            if channel.is_command() {
+                let kept = samples.iter().enumerate().filter(|(k, _)| k * 7 % 100 >= 8);
+                *samples = kept.map(|(_, sample)| sample).collect();
+            }
+        }
+    };
+    let run = "run-1-arm_step.log.gz";
+    let Some((evidence, values)) = fitted_after("frame-loss", Scope::All, run, "", lose) else {
+        return;
+    };
+    assert!(evidence > 50.0, "{evidence}");
+    assert!((values[0] - 0.08).abs() < 0.01, "{values:?}");
 }

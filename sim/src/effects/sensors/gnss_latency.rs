@@ -14,11 +14,11 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "gnss-latency",
     block: Block::Sensor,
     meaning: "a fix shows where the antenna was some time ago",
-    source: "assumed: receivers with corrections take 20 to 150 ms",
+    source: "assumed: receivers with corrections take 20 to 150 ms and are told of by their makers",
     parameters: &[Parameter {
         name: "delay_s",
         neutral: 0.0,
-        tolerance: 0.05,
+        tolerance: 0.02,
         range: [0.0, 2.0],
         slot: Slot::Whole(|effects| &mut effects.sensors.gnss_latency.delay_s),
     }],

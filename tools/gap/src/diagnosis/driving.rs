@@ -1,62 +1,133 @@
-//! Engine and circuits from the throttle alone: mean wheel speed and mean pressure out.
+//! Engine and circuits on measured inputs: throttle and wheel speeds in, pressures out; pressures in,
+//! what the wheels make of them out.
+//!
+//! Between throttle and pressure stands the law that holds the wheels' mean speed, and it is known;
+//! so pressures tell at what speed it aimed, to a hundredth of a second. Its integral part is not
+//! known: it is drawn to what was measured. Between pressure and speed stand mass, grade and rolling.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
-use xt28_sim::{Drive, DriveInput, Effects};
+use xt28_sim::{Drive, DriveInput, Effects, Terrain};
 
-use super::signals::{DT_S, Samples, Signals};
+use super::signals::{DT_S, Samples, Signals, moving_mean};
 
-/// What the lumped machine did less what was measured.
+/// What the block did less what was measured.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DriveErrors {
-    /// Mean wheel speed, rad/s.
-    pub(super) speed_rad_s: Samples,
     /// Forward less reverse pressure, mean of both circuits, Pa.
     pub(super) pressure_pa: Samples,
+    /// Half of what the first circuit has more than the second, Pa.
+    pub(super) difference_pa: Samples,
+    /// Mean torque on a wheel that mass, grade and rolling take, mean over [`FORCE_S`], Nm.
+    pub(super) force_nm: Samples,
 }
 
-/// Steps between two samples: the drive's law is stiff against the wheels' inertia.
-const SUBSTEPS: u32 = 2;
+/// Time in which the integral part of the speed's control is drawn to what was measured, s.
+const DRAWN_S: f64 = 0.25;
+/// The frames pitch on their arms as the machine speeds up: forces balance over this time only, s.
+const FORCE_S: f64 = 2.0;
+/// Pressure for the largest torque, Pa (the machine's conventions).
+pub(super) const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
+/// Speed over which rolling resistance changes its sign, rad/s (assumed).
+const TURNS_RAD_S: f64 = 0.05;
 
-/// Drives the block and a mass on wheels with the throttle commanded.
+/// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
 pub(super) fn drive_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> DriveErrors {
-    let dt_s = DT_S / f64::from(SUBSTEPS);
+    let mut errors = pressure_errors(signals, machine, effects);
+    errors.force_nm = force_error_nm(signals, machine, effects);
+    errors
+}
+
+fn pressure_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> DriveErrors {
     let drive = Drive::new(machine, effects);
-    let mut state = drive.at_rest(dt_s);
-    let w = &machine.wheels;
-    let payload_kg = effects.masses.payload.mass_kg;
-    let weight_n = (machine.mass_kg() + payload_kg) * GRAVITY_M_S2;
-    let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
-    let inertia_kg_m2 =
-        (machine.mass_kg() + payload_kg) * w.radius_m * w.radius_m + 6.0 * wheel_kg_m2;
-    let added = effects.wheels.iter().map(|(_, e)| e.rolling_resistance.added).sum::<f64>() / 6.0;
-    let drag_nm = (w.rolling_resistance + added) * weight_n * w.radius_m;
-    let slope_nm = -weight_n * effects.slope.grade_x_rad.sin() * w.radius_m;
-    let (mut lag, mut speed) = (Lag::new(signals.throttle[0]), signals.mean_wheel_speed_rad_s(0));
+    let mut state = drive.at_rest(DT_S);
+    let nm_per_pa = machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
+    let mut lag = Lag::new(signals.throttle[0]);
+    let (mut common_pa, mut difference_pa, mut since_s) = (0.0, 0.0, 0.0);
     let mut errors = DriveErrors::default();
     for i in 0..signals.len {
-        let mut pressure_pa = 0.0;
-        for _ in 0..SUBSTEPS {
-            let throttle = lag.step(signals.throttle[i], machine.drive.speed_time_constant_s, dt_s);
-            let input = DriveInput {
-                // Motors at a third: what the pump then gives is the throttle's share of full speed.
-                pump_displacement: [throttle; 2],
-                motor_displacement: PerWheel::splat(1.0 / 3.0),
-                engine_speed_rpm: machine.drive.engine_speed_rpm,
-                wheel_speed_rad_s: PerWheel::splat(speed),
-            };
-            let out = drive.step(&mut state, &input, dt_s);
-            let p = out.pump_pressure_pa;
-            pressure_pa = (p[1] - p[0] + p[3] - p[2]) / 2.0;
-            let torque_nm = out.wheel_torque_nm.sum() - drag_nm * (speed / 0.05).tanh() + slope_nm;
-            speed += torque_nm / inertia_kg_m2 * dt_s;
+        // A command is taken up in the ECU's next period, on average one and a half samples later.
+        let taken = |back: usize| signals.throttle[i.saturating_sub(back)];
+        let asked = 0.5 * (taken(1) + taken(2));
+        let throttle = lag.step(asked, machine.drive.speed_time_constant_s, DT_S);
+        let input = DriveInput {
+            // Motors at a third: what the pump then gives is the throttle's share of full speed.
+            pump_displacement: [throttle; 2],
+            motor_displacement: PerWheel::splat(1.0 / 3.0),
+            engine_speed_rpm: machine.drive.engine_speed_rpm,
+            wheel_speed_rad_s: wheel_speeds(signals, effects, i),
+        };
+        let p = drive.step(&mut state, &input, DT_S).pump_pressure_pa;
+        since_s += DT_S;
+        if signals.is_fresh_pump_pressure[i] {
+            let over = circuits_pa(signals, i);
+            let parts = [p[1] - p[0] - over[0], p[3] - p[2] - over[1]];
+            common_pa = (parts[0] + parts[1]) / 2.0;
+            difference_pa = (parts[0] - parts[1]) / 2.0;
+            let share = (since_s / DRAWN_S).min(1.0);
+            state.mean_torque_nm -= share * nm_per_pa * common_pa;
+            since_s = 0.0;
         }
-        let measured = |side: usize| signals.pump_pressure_pa[side][i];
-        errors.speed_rad_s.push(speed - signals.mean_wheel_speed_rad_s(i));
-        errors
-            .pressure_pa
-            .push(pressure_pa - (measured(1) - measured(0) + measured(3) - measured(2)) / 2.0);
+        errors.pressure_pa.push(common_pa);
+        errors.difference_pa.push(difference_pa);
     }
     errors
+}
+
+/// Wheel speeds at sample `i`, as they are behind sensors that read in proportion too much: the oil
+/// knows nothing of sensors.
+fn wheel_speeds(signals: &Signals, effects: &Effects, i: usize) -> PerWheel<f64> {
+    let scale = |wheel: Wheel| effects.wheels[wheel].wheel_speed_scale.factor;
+    PerWheel::from_fn(|wheel| signals.wheel_speed_rad_s[wheel][i] / scale(wheel))
+}
+
+/// Forward less reverse pressure of both circuits at sample `i`, Pa.
+fn circuits_pa(signals: &Signals, i: usize) -> [f64; 2] {
+    let measured = |side: usize| signals.pump_pressure_pa[side][i];
+    [measured(1) - measured(0), measured(3) - measured(2)]
+}
+
+/// Torque that the motion takes less the torque there was, mean of the wheels, Nm. `NaN` off level
+/// ground: where each wheel stands is then not known well enough.
+fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+    if !matches!(signals.terrain, Terrain::Flat) {
+        return vec![f64::NAN; signals.len];
+    }
+    let w = &machine.wheels;
+    let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
+    let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+    let inertia_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0 + wheel_kg_m2;
+    let weight_nm = mass_kg * GRAVITY_M_S2 * w.radius_m / 6.0;
+    let added = effects.wheels.iter().map(|(_, e)| e.rolling_resistance.added).sum::<f64>() / 6.0;
+    let drag_nm = (w.rolling_resistance + added) * weight_nm;
+    let nm_per_pa = w.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
+    let end = signals.len.saturating_sub(1);
+    let mut error = 0.0;
+    let errors: Samples = (0..signals.len)
+        .map(|i| {
+            if signals.is_fresh_pump_pressure[i] {
+                let mean = |i| wheel_speeds(signals, effects, i).sum() / 6.0;
+                let (from, to) = (i.saturating_sub(5), (i + 5).min(end));
+                #[allow(clippy::cast_precision_loss)] // ten samples
+                let over_s = (to - from).max(1) as f64 * DT_S;
+                let speeds_up = (mean(to) - mean(from)) / over_s;
+                let [first, second] = circuits_pa(signals, i);
+                error = inertia_kg_m2 * speeds_up
+                    + drag_nm * (mean(i) / TURNS_RAD_S).tanh()
+                    + weight_nm * climbs(signals, effects, i)
+                    - nm_per_pa * (first + second) / 2.0;
+            }
+            error
+        })
+        .collect();
+    moving_mean(&errors, FORCE_S)
+}
+
+/// Sine of the grade along the machine's heading.
+#[allow(clippy::cast_precision_loss)]
+fn climbs(signals: &Signals, effects: &Effects, i: usize) -> f64 {
+    let heading = signals.heading_at(i as f64 * DT_S).map_or(0.0, |[heading, _]| heading);
+    let (sin, cos) = heading.sin_cos();
+    effects.slope.grade_x_rad.sin() * cos + effects.slope.grade_y_rad.sin() * sin
 }

@@ -7,7 +7,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Scope};
 
 use super::signals::{Samples, Signals};
-use super::{arms, controllers, driving, joints, position_control, stance, travel};
+use super::{arms, bus, controllers, driving, joints, position_control, stance, travel};
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;
@@ -23,16 +23,18 @@ pub enum Generator {
     ArmStroke(Wheel),
     /// Command and stroke to opening, one arm.
     ArmEcu(Wheel),
-    /// Opening to angle, front (0) or rear (1) joint.
+    /// Opening and angle to the torque between them, front (0) or rear (1) joint.
     Joint(usize),
     /// Command and angle to opening, front (0) or rear (1) joint.
     SteerEcu(usize),
-    /// Throttle to mean wheel speed and pressure.
+    /// Throttle and wheel speeds to pressures, pressures to motion.
     Drive,
     /// Strokes and loads to attitude and weight.
     Stance,
-    /// Wheel speeds and joints to one another and to the receiver's fixes.
+    /// Wheel speeds, arms and joints to one another and to the receiver's fixes.
     Travel,
+    /// What commands come, and when.
+    Bus,
 }
 
 /// One residual: what a block predicts less what was measured, in units of its floor.
@@ -53,9 +55,11 @@ pub enum Signal {
     Stroke,
     ArmOpening,
     JointAngle,
+    JointFast,
     SteerOpening,
-    DriveSpeed,
     DrivePressure,
+    DriveDifference,
+    DriveForce,
     Roll,
     Pitch,
     Weight,
@@ -65,6 +69,9 @@ pub enum Signal {
     WheelSpeed(Wheel),
     TravelSpeed,
     TravelCourse,
+    BusMissing,
+    BusPlace,
+    BusUneven,
 }
 
 /// What separates two models of one clean machine.
@@ -84,19 +91,24 @@ impl Signal {
         let (sigma, correlation_s) = match self {
             Self::Stroke => (0.2e-3, 0.8),
             Self::ArmOpening => (1.0e-3, 0.5),
-            Self::JointAngle => (0.0065, 1.0),
-            Self::SteerOpening => (0.004, 0.5),
-            Self::DriveSpeed => (0.025, 0.5),
-            Self::DrivePressure => (8.0e5, 0.6),
+            Self::JointAngle => (0.005, 2.0),
+            Self::JointFast => (1.8e-3, 0.3),
+            Self::SteerOpening => (0.0025, 0.3),
+            Self::DrivePressure => (3.5e5, 0.3),
+            Self::DriveDifference => (0.7e5, 0.3),
+            Self::DriveForce => (150.0, 2.5),
             Self::Roll => (0.0005, 5.0),
             Self::Pitch => (0.0006, 5.0),
             Self::Weight => (450.0, 5.0),
             Self::WeightX => (0.005, 5.0),
             Self::WeightY => (0.004, 5.0),
             Self::Contact(_) => (0.5e-3, 3.0),
-            Self::WheelSpeed(_) => (0.05, 2.0),
+            Self::WheelSpeed(_) => (0.004, 1.0),
             Self::TravelSpeed => (0.012, 1.5),
             Self::TravelCourse => (0.03, 1.5),
+            Self::BusMissing => (0.01, 1.0),
+            Self::BusPlace => (0.03, 1.0),
+            Self::BusUneven => (0.05, 1.0),
         };
         Floor { sigma, correlation_s }
     }
@@ -117,7 +129,7 @@ impl Generator {
         all.extend(Wheel::ALL.map(Self::ArmStroke));
         all.extend(Wheel::ALL.map(Self::ArmEcu));
         all.extend([Self::Joint(0), Self::Joint(1), Self::SteerEcu(0), Self::SteerEcu(1)]);
-        all.extend([Self::Drive, Self::Stance, Self::Travel]);
+        all.extend([Self::Drive, Self::Stance, Self::Travel, Self::Bus]);
         all
     }
 
@@ -136,11 +148,12 @@ impl Generator {
                 name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
             }
             Self::Joint(_) => {
-                effect.block == Block::Steering && !Self::SteerEcu(1).hears(effect, scope)
+                let steers = effect.block == Block::Steering;
+                (steers && !Self::SteerEcu(1).hears(effect, scope)) || name == "slippery-ground"
             }
             Self::Drive => {
                 (effect.block == Block::Drive && name != "slippery-ground")
-                    || matches!(name, "payload" | "terrain-slope")
+                    || matches!(name, "payload" | "terrain-slope" | "wheel-speed-scale")
             }
             Self::Stance => {
                 matches!(effect.block, Block::Payload | Block::Ground | Block::Tyre)
@@ -152,6 +165,7 @@ impl Generator {
                 ["slippery-ground", "wheel-speed-scale"].contains(&name)
                     || name.starts_with("gnss-")
             }
+            Self::Bus => effect.block == Block::Bus,
         }
     }
 
@@ -172,6 +186,7 @@ impl Generator {
             Self::Joint(_) | Self::SteerEcu(_) => Block::Steering,
             Self::Drive | Self::Travel => Block::Drive,
             Self::Stance => Block::Payload,
+            Self::Bus => Block::Bus,
         }
     }
 
@@ -197,7 +212,8 @@ impl Generator {
                 vec![one(Signal::ArmOpening, error)]
             }
             Self::Joint(j) => {
-                vec![one(Signal::JointAngle, joints::joint_error_rad(s, machine, effects, j))]
+                let e = joints::joint_errors(s, machine, effects, j);
+                vec![one(Signal::JointAngle, e.slow_rad), one(Signal::JointFast, e.fast_rad)]
             }
             Self::SteerEcu(j) => {
                 let error = controllers::steer_opening_error(s, machine, effects, j);
@@ -206,8 +222,9 @@ impl Generator {
             Self::Drive => {
                 let errors = driving::drive_errors(s, machine, effects);
                 vec![
-                    one(Signal::DriveSpeed, errors.speed_rad_s),
                     one(Signal::DrivePressure, errors.pressure_pa),
+                    one(Signal::DriveDifference, errors.difference_pa),
+                    one(Signal::DriveForce, errors.force_nm),
                 ]
             }
             Self::Stance => {
@@ -236,6 +253,14 @@ impl Generator {
                 );
                 all
             }
+            Self::Bus => {
+                let e = bus::bus_errors(s, effects);
+                vec![
+                    one(Signal::BusMissing, e.missing),
+                    one(Signal::BusPlace, e.out_of_place),
+                    one(Signal::BusUneven, e.uneven),
+                ]
+            }
         }
     }
 }
@@ -257,6 +282,7 @@ impl fmt::Display for Generator {
             Self::Drive => f.write_str("drive"),
             Self::Stance => f.write_str("stance"),
             Self::Travel => f.write_str("travel"),
+            Self::Bus => f.write_str("bus"),
         }
     }
 }
@@ -268,9 +294,11 @@ impl fmt::Display for Signal {
             Self::Stroke => "stroke",
             Self::ArmOpening => "arm opening",
             Self::JointAngle => "joint angle",
+            Self::JointFast => "joint angle, what changes within a second",
             Self::SteerOpening => "steering opening",
-            Self::DriveSpeed => "mean wheel speed",
             Self::DrivePressure => "pump pressure",
+            Self::DriveDifference => "difference of the circuits' pressures",
+            Self::DriveForce => "force that drives",
             Self::Roll => "roll",
             Self::Pitch => "pitch",
             Self::Weight => "weight",
@@ -280,6 +308,9 @@ impl fmt::Display for Signal {
             Self::WheelSpeed(_) => "wheel speed",
             Self::TravelSpeed => "speed over ground",
             Self::TravelCourse => "course over ground",
+            Self::BusMissing => "share of commands missing",
+            Self::BusPlace => "commands out of their places",
+            Self::BusUneven => "intervals between commands",
         })
     }
 }

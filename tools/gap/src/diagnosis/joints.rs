@@ -1,30 +1,86 @@
-//! The articulation joints on measured inputs: the valve's opening in, the joint's angle out.
+//! The articulation joints on measured inputs: the valve's opening in, how far the oil leads the joint out.
+//!
+//! The lock turns a joint by k (oil - angle), and what turns it against its damper and against the
+//! tyres is known: so the oil that the valve has let in can be held against the joint's own motion at
+//! every instant, and nothing has to be integrated but the valve. A relief valve gives way to what is
+//! measured; the torque it then lets stand must still be the one that this motion takes.
 
 use xt28_machine::Machine;
-use xt28_sim::{Effects, Steering, SteeringInput};
+use xt28_sim::{Effects, Steering};
 
-use super::signals::{DT_S, Samples, Signals};
+use super::controllers::steer_opening_asked;
+use super::generator::Signal;
+use super::scrub::scrub_nm;
+use super::signals::{DT_S, Samples, Signals, moving_mean};
 
-/// Angle that the block predicts for the front (0) or rear (1) joint less the angle measured, rad.
+/// What the oil leads the joint by less what this motion takes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct JointErrors {
+    /// Mean over [`SLOW_S`], rad: rates, play, scrub.
+    pub(super) slow_rad: Samples,
+    /// What changes faster, rad: delays and lags.
+    pub(super) fast_rad: Samples,
+}
+
+/// What is slower is told by the scrub of tyres as much as by the valve, s.
+const SLOW_S: f64 = 1.0;
+/// What sound machines leave of the slow and of the fast error, in floors (nominal logs of a second
+/// plant and one sound machine with tolerances).
+const ORDINARY: [f64; 2] = [0.4, 0.25];
+/// Half a play beyond which its time counts wholly, rad: less is told by no wire.
+const EXCUSED_RAD: f64 = 0.0025;
+/// Half a step of the steering currents' wire format over their range: 1.5 of 315 mA, with a little
+/// for the rounding.
+const HALF_STEP: f64 = 1.05 * 1.5 / 315.0;
+
+/// Errors of the front (0) or rear (1) joint over a run.
 #[must_use]
-pub(super) fn joint_error_rad(
+pub(super) fn joint_errors(
     signals: &Signals,
     machine: &Machine,
     effects: &Effects,
     joint: usize,
-) -> Samples {
+) -> JointErrors {
     let steering = Steering::new(machine, &effects.steering);
     let mut state = steering.straight(DT_S);
     let angle = &signals.joint_rad[joint];
-    let step = |i: usize| {
-        let before = angle[i.saturating_sub(5)];
-        let rate_rad_s = if i < 5 { 0.0 } else { (angle[i] - before) / (5.0 * DT_S) };
-        let opening = signals.steer_opening[joint][i];
-        let input = SteeringInput { opening, angle_rad: angle[i], rate_rad_s };
-        steering.step(&mut state, &input, DT_S);
-        // The damper acts on the joint's own rate: while it turns, the oil is ahead of it.
-        let ahead = steering.damping_nms() / steering.stiffness_nm() * rate_rad_s;
-        state.rest_rad - ahead - angle[i]
-    };
-    (0..signals.len).map(step).collect()
+    let stiffness_nm = steering.stiffness_nm();
+    let half_play = 0.5 * effects.steering.backlash.width_rad;
+    let reach = machine.articulation.torque_max_nm / stiffness_nm + half_play;
+    let openings = finer_openings(signals, machine, joint);
+    let scrub = scrub_nm(signals, machine, effects, joint);
+    let mut oil_rad = angle.first().copied().unwrap_or_default();
+    // Within the play nothing is held: where the joint is then is the ground's matter, and a play that
+    // is wide enough would explain anything. So that time counts as an ordinary error.
+    let excused = (half_play / EXCUSED_RAD).powi(2).min(1.0);
+    let mut is_free = vec![false; signals.len];
+    let error: Samples = (0..signals.len)
+        .map(|i| {
+            let rate = steering.open(&mut state, openings[i], DT_S);
+            oil_rad = (oil_rad + rate * DT_S).clamp(angle[i] - reach, angle[i] + reach);
+            let gap = oil_rad - angle[i];
+            let twist = gap - gap.clamp(-half_play, half_play);
+            is_free[i] = half_play > 0.0 && twist == 0.0;
+            if is_free[i] {
+                return 0.0;
+            }
+            let taken_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i] + scrub[i];
+            twist - taken_nm / stiffness_nm
+        })
+        .collect();
+    let mut slow_rad = moving_mean(&error, SLOW_S);
+    let mut fast_rad: Samples = error.iter().zip(&slow_rad).map(|(all, slow)| all - slow).collect();
+    for i in (0..signals.len).filter(|&i| is_free[i]) {
+        slow_rad[i] = excused * ORDINARY[0] * Signal::JointAngle.floor().sigma;
+        fast_rad[i] = excused * ORDINARY[1] * Signal::JointFast.floor().sigma;
+    }
+    JointErrors { slow_rad, fast_rad }
+}
+
+/// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.
+fn finer_openings(signals: &Signals, machine: &Machine, joint: usize) -> Samples {
+    let asked = steer_opening_asked(signals, machine, &Effects::default(), joint);
+    let within =
+        |(asked, logged): (&f64, &f64)| asked.clamp(logged - HALF_STEP, logged + HALF_STEP);
+    asked.iter().zip(&signals.steer_opening[joint]).map(within).collect()
 }

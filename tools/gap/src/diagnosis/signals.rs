@@ -41,6 +41,13 @@ pub struct Signals {
     pub stroke_m: PerWheel<Samples>,
     /// Stroke rates: slope of the reading over 0.2 s.
     pub stroke_rate_m_s: PerWheel<Samples>,
+    /// Strokes and wheel speeds through one and the same filter, so that they can be held against one
+    /// another: two means of 0.3 s each, of strokes as read.
+    pub smooth_stroke_m: PerWheel<Samples>,
+    /// Slope of the smooth strokes.
+    pub smooth_stroke_rate_m_s: PerWheel<Samples>,
+    /// Smooth wheel speeds, forward > 0.
+    pub smooth_wheel_speed_rad_s: PerWheel<Samples>,
     /// Loads of the cylinders, from their pressures.
     pub cylinder_load_n: PerWheel<Samples>,
     /// Pressures of chambers A and B, Pa, as the ECU's filter shows them; empty where not logged.
@@ -53,6 +60,14 @@ pub struct Signals {
     pub steer_opening: [Samples; 2],
     /// Front and rear joint, left > 0.
     pub joint_rad: [Samples; 2],
+    /// Joint rates: slope of the angle over 0.1 s.
+    pub joint_rate_rad_s: [Samples; 2],
+    /// Whether the currents of the drive's ECU came in this very sample.
+    pub is_fresh_drive_current: Vec<bool>,
+    /// The same of the pumps' pressures.
+    pub is_fresh_pump_pressure: Vec<bool>,
+    /// Instants at which commands to the arms and to the drive came, s.
+    pub command_times_s: [Vec<f64>; 2],
     /// Front joint commanded.
     pub target_joint_rad: Samples,
     /// Throttle commanded, -1 to 1.
@@ -111,6 +126,11 @@ impl Signals {
             both(&a, &b, pins::steer_opening)
         };
         let stroke_reading_m = wheels(Channel::Stroke);
+        let smooth = |raw: &Samples| moving_mean(&moving_mean(raw, 0.3), 0.3);
+        let smooth_stroke_m = PerWheel::from_fn(|w| {
+            smooth(&stroke_reading_m[w]).into_iter().map(|read| read + 0.5 * CUT_M).collect()
+        });
+        let wheel_speed_rad_s = wheels(Channel::WheelSpeed);
         let stroke_m = stroke_reading_m.clone().map(|reading| uncut(&reading));
         Ok(Self {
             name: name.to_owned(),
@@ -122,6 +142,10 @@ impl Signals {
             stroke_rate_m_s: PerWheel::from_fn(|w| slope(&stroke_m[w])),
             stroke_m,
             stroke_reading_m,
+            smooth_stroke_rate_m_s: PerWheel::from_fn(|w| slope_over(&smooth_stroke_m[w], 1)),
+            smooth_stroke_m,
+            smooth_wheel_speed_rad_s: PerWheel::from_fn(|w| smooth(&wheel_speed_rad_s[w])),
+            wheel_speed_rad_s,
             cylinder_load_n: wheels(Channel::CylinderLoad),
             chamber_pa: PerWheel::from_fn(|w| {
                 [sample(Channel::BorePressure(w)), sample(Channel::RodPressure(w))]
@@ -132,12 +156,18 @@ impl Signals {
                 let load = Channel::CylinderLoad(w);
                 is_new(series.get(if logged { &pressures[0] } else { &load }), len)
             }),
-            wheel_speed_rad_s: wheels(Channel::WheelSpeed),
             steer_opening: [
                 steer(SteerSide::FrontA, SteerSide::FrontB),
                 steer(SteerSide::RearA, SteerSide::RearB),
             ],
+            joint_rate_rad_s: [Channel::FrontJoint, Channel::RearJoint]
+                .map(|channel| slope_over(&sample(channel), 5)),
             joint_rad: [sample(Channel::FrontJoint), sample(Channel::RearJoint)],
+            is_fresh_drive_current: is_new(series.get(&Channel::SteerCurrent(SteerSide::FrontA)), len),
+            is_fresh_pump_pressure: is_new(series.get(&Channel::PumpPressure(PumpSide::OneA)), len),
+            command_times_s: [Channel::ArmMode, Channel::Throttle].map(|channel| {
+                series.get(&channel).map_or_else(Vec::new, |s| s.iter().map(|(at, _)| at).collect())
+            }),
             target_joint_rad: sample(Channel::TargetJoint),
             throttle: sample(Channel::Throttle),
             pump_pressure_pa: PumpSide::ALL.map(|side| sample(Channel::PumpPressure(side))),
@@ -153,7 +183,7 @@ impl Signals {
     #[must_use]
     pub fn heading_at(&self, at_s: f64) -> Option<[f64; 2]> {
         let k = self.fixes.partition_point(|fix| fix[0] < at_s);
-        if k == 0 || k >= self.headings.len() {
+        if k == 0 || k >= self.headings.len().min(self.fixes.len()) {
             return None;
         }
         let share = (at_s - self.fixes[k - 1][0]) / (self.fixes[k][0] - self.fixes[k - 1][0]);
@@ -229,19 +259,43 @@ fn is_new(series: Option<&Series>, len: usize) -> Vec<bool> {
     new
 }
 
-/// Slope of a quantised reading: central difference over 0.2 s, one-sided at the ends.
-#[allow(clippy::cast_precision_loss)]
+/// Slope of a quantised reading over 0.2 s.
 fn slope(samples: &Samples) -> Samples {
-    const HALF: usize = 10;
+    slope_over(samples, 10)
+}
+
+/// Central difference over twice `half` samples, one-sided at the ends.
+#[allow(clippy::cast_precision_loss)]
+fn slope_over(samples: &Samples, half: usize) -> Samples {
     let end = samples.len().saturating_sub(1);
     (0..samples.len())
         .map(|i| {
-            let (from, to) = (i.saturating_sub(HALF), (i + HALF).min(end));
+            let (from, to) = (i.saturating_sub(half), (i + half).min(end));
             if from == to {
                 0.0
             } else {
                 (samples[to] - samples[from]) / ((to - from) as f64 * DT_S)
             }
+        })
+        .collect()
+}
+
+/// Mean over `window_s` around each sample; shorter at the ends.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
+pub(super) fn moving_mean(samples: &[f64], window_s: f64) -> Samples {
+    let half = (0.5 * window_s / DT_S) as usize;
+    let mut sums = Vec::with_capacity(samples.len() + 1);
+    let mut sum = 0.0;
+    sums.push(sum);
+    for value in samples {
+        sum += value;
+        sums.push(sum);
+    }
+    (0..samples.len())
+        .map(|i| {
+            let (from, to) = (i.saturating_sub(half), (i + half + 1).min(samples.len()));
+            (sums[to] - sums[from]) / (to - from) as f64
         })
         .collect()
 }
@@ -321,4 +375,20 @@ fn headings(all: &AllSeries) -> Vec<[f64; 2]> {
             [first + unwound[k][1], if b[0] > a[0] { (b[1] - a[1]) / (b[0] - a[0]) } else { 0.0 }]
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_moving_mean_keeps_a_line_and_flattens_a_spike() {
+        let line: Vec<f64> = (0..400).map(f64::from).collect();
+        let mean = moving_mean(&line, 1.0);
+        assert!((mean[200] - 200.0).abs() < 1e-9);
+        let mut spike = vec![0.0; 400];
+        spike[200] = 101.0;
+        assert!((moving_mean(&spike, 1.0)[180] - 1.0).abs() < 1e-9);
+        assert_eq!(moving_mean(&spike, 1.0)[100], 0.0);
+    }
 }

@@ -97,17 +97,15 @@ fn reading(
         (Generator::SteerEcu(j), Signal::SteerOpening) => {
             ("opening, %", 1e2, Some(s.steer_opening[j].clone()))
         }
-        (_, Signal::DriveSpeed) => {
-            let mean = (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i)).collect();
-            ("wheel speed, rad/s", 1.0, Some(mean))
-        }
         (_, Signal::Roll) => ("roll, deg", deg, Some(s.roll_rad.clone())),
         (_, Signal::Pitch) => ("pitch, deg", deg, Some(s.pitch_rad.clone())),
         (_, Signal::WheelSpeed(w)) => {
             ("wheel speed, rad/s", 1.0, Some(s.wheel_speed_rad_s[w].clone()))
         }
         (_, Signal::Weight) => ("weight, kN", 1e-3, None),
-        (_, Signal::DrivePressure) => ("pressure, bar", 1e-5, None),
+        (_, Signal::DrivePressure | Signal::DriveDifference) => ("pressure, bar", 1e-5, None),
+        (Generator::Joint(_), Signal::JointFast) => ("joint angle, deg", deg, None),
+        (_, Signal::DriveForce) => ("torque on a wheel, kNm", 1e-3, None),
         _ => (FLOORS, 1.0, None),
     }
 }

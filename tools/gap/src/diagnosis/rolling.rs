@@ -1,0 +1,124 @@
+//! Wheels against one another: all roll over the same ground, so their speeds differ only by bends and
+//! by the arms' swing, and by who slips or misreads.
+//!
+//! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
+//! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
+
+use xt28_machine::{Linkage, Machine, PerWheel, Side};
+use xt28_sim::Effects;
+
+use super::axles::Axles;
+use super::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use super::signals::{Samples, Signals};
+
+/// What rolling leaves open; `NaN` where nothing can be said.
+#[derive(Clone, Debug)]
+pub(super) struct RollingErrors {
+    /// Each wheel's speed that the six together say less its own, rad/s as the sensor reads.
+    pub(super) wheel_rad_s: PerWheel<Samples>,
+    /// Speed of the front axle over ground that the wheels say, m/s.
+    pub(super) ahead_m_s: Samples,
+}
+
+/// A cylinder that carries less may have its wheel in the air, N.
+const CARRYING_N: f64 = 8_000.0;
+/// Torque at which a tyre creeps by as much as else separates two models, Nm (seen on the nominal logs
+/// of a second plant: 0.1 m/s at 10 kNm).
+const CREEPS_NM: f64 = 400.0;
+/// Samples from one look to the next.
+const STRIDE: usize = 5;
+/// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
+const BENT_RAD: f64 = 0.02;
+
+/// Rolling over a run.
+#[must_use]
+pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) -> RollingErrors {
+    let (axles, linkage) = (Axles::new(machine), machine.linkage());
+    let is_flat = matches!(s.terrain, xt28_sim::Terrain::Flat);
+    let mut errors = RollingErrors {
+        wheel_rad_s: PerWheel::from_fn(|_| vec![f64::NAN; s.len]),
+        ahead_m_s: vec![0.0; s.len],
+    };
+    for i in (0..s.len).step_by(STRIDE) {
+        let end = (i + STRIDE).min(s.len);
+        let joint = [0, 1].map(|j| s.joint_rad[j][i]);
+        let ground_m_s = ground_speeds(s, machine, effects, &linkage, i);
+        let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
+        let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
+        let expected = |ahead| expected_speeds(&axles, machine, joint, rate, ahead);
+        let (none, one) = (expected(0.0), expected(1.0));
+        let (mut product, mut square) = (0.0, 0.0);
+        for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
+            let by_ahead = one[wheel] - none[wheel];
+            product += by_ahead * (ground_m_s[wheel] - none[wheel]);
+            square += by_ahead * by_ahead;
+        }
+        if square == 0.0 {
+            continue;
+        }
+        let ahead = product / square;
+        errors.ahead_m_s[i..end].fill(ahead);
+        if !is_flat || joint.iter().any(|rad| rad.abs() > BENT_RAD) {
+            continue;
+        }
+        for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
+            let e = &effects.wheels[wheel];
+            let error = none[wheel] + ahead * (one[wheel] - none[wheel]) - ground_m_s[wheel];
+            let per_m = e.wheel_speed_scale.factor
+                / (machine.wheels.radius_m * (1.0 - e.slippery_ground.slip));
+            errors.wheel_rad_s[wheel][i..end].fill(error * per_m / doubt(s, machine, i));
+        }
+    }
+    errors
+}
+
+/// How many times wider a wheel's speed is to be taken at the torque of sample `i`, from one.
+fn doubt(s: &Signals, machine: &Machine, i: usize) -> f64 {
+    let over = |a: usize| (s.pump_pressure_pa[a + 1][i] - s.pump_pressure_pa[a][i]).abs();
+    let torque_nm =
+        0.5 * (over(0) + over(2)) * machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
+    1.0 + torque_nm / CREEPS_NM
+}
+
+/// Speed at which each wheel's frame goes over the ground by what its sensor reads, m/s.
+fn ground_speeds(
+    s: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    linkage: &Linkage,
+    i: usize,
+) -> PerWheel<f64> {
+    let radius_m = machine.wheels.radius_m;
+    PerWheel::from_fn(|w| {
+        let e = &effects.wheels[w];
+        let reading = s.smooth_wheel_speed_rad_s[w][i];
+        let rolls = reading / e.wheel_speed_scale.factor * radius_m;
+        // Front arms point forward, the others backward.
+        let forward = if w.axle() as usize == 0 { 1.0 } else { -1.0 };
+        let (pose, after) = (
+            linkage.at_stroke(s.smooth_stroke_m[w][i]),
+            linkage.at_stroke(s.smooth_stroke_m[w][i] + 1e-4),
+        );
+        let by_stroke = |a: f64, b: f64| (b - a) / 1e-4 * forward * s.smooth_stroke_rate_m_s[w][i];
+        let turns = by_stroke(pose.angle_rad, after.angle_rad) * radius_m;
+        // Turned on its arm and with its arm it rolls; less what it is carried ahead of its frame.
+        (rolls + turns) * (1.0 - e.slippery_ground.slip) - by_stroke(pose.reach_m, after.reach_m)
+    })
+}
+
+/// The same for a machine whose front axle goes `ahead`, m/s.
+fn expected_speeds(
+    axles: &Axles,
+    machine: &Machine,
+    joint: [f64; 2],
+    rate: [f64; 2],
+    ahead: f64,
+) -> PerWheel<f64> {
+    let motion = axles.rolling(joint, rate, ahead);
+    let half_track = machine.wheels.track_m / 2.0;
+    PerWheel::from_fn(|w| {
+        let frame = w.axle() as usize;
+        let left = if w.side() == Side::Left { half_track } else { -half_track };
+        motion.along_m_s[frame] - left * motion.turn_rad_s[frame]
+    })
+}

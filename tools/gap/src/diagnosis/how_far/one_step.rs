@@ -2,8 +2,8 @@
 //!
 //! Of the whole machine a tenth of a second says little: setting it down on measured states moves it by
 //! more than an effect does in that time. On measured inputs every block is set anew by itself. What a
-//! block adds up (a stroke, an angle, a speed) is judged by what its error grows by from one sample to
-//! the next; what it says at once (an opening, an attitude, a weight) by its error.
+//! block adds up (a stroke) is judged by what its error grows by from one sample to the next; what it says
+//! at once (a torque, an opening, an attitude, a weight) by its error.
 
 use xt28_machine::Machine;
 use xt28_sim::Effects;
@@ -17,7 +17,7 @@ pub(super) type Ahead = Vec<(Signal, Vec<f64>)>;
 
 /// Whether a block adds this signal up over time.
 const fn adds_up(signal: Signal) -> bool {
-    matches!(signal, Signal::Stroke | Signal::JointAngle | Signal::DriveSpeed)
+    matches!(signal, Signal::Stroke)
 }
 
 /// What each block's signal lacks on one run.

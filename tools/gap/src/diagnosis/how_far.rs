@@ -28,7 +28,7 @@ pub use course::{Horizon, Quantity};
 pub use refit::Refit;
 
 use self::squares::Squares;
-use self::twin::Course;
+use self::twin::{Course, Stretch};
 use super::inquiry::Inquiry;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
@@ -75,7 +75,7 @@ impl HowFar {
             fit: inquiry.runs.iter().map(|run| run.fit).collect(),
             before: Gaps::default(),
         };
-        how_far.before = how_far.gaps(&how_far.believed);
+        how_far.before = how_far.gaps(&how_far.believed, 0.0);
         Ok(how_far)
     }
 
@@ -90,20 +90,26 @@ impl HowFar {
     /// How far `effects` shrink the gap of what is believed.
     #[must_use]
     pub fn shrink(&self, effects: &Effects) -> Shrink {
-        self.shrink_of(&self.gaps(effects))
+        self.shrink_of(&self.gaps(effects, 0.0))
+    }
+
+    /// How far `causes` at their values shrink it, each run without them until they begin.
+    #[must_use]
+    pub fn shrink_by(&self, causes: &[Cause]) -> Shrink {
+        self.shrink_of(&self.gaps(&self.with(causes), since_s(causes)))
     }
 
     /// The gap on the judged runs under `effects` at a horizon of the whole machine: mean over signals,
     /// in floors.
     #[must_use]
     pub fn gap(&self, effects: &Effects, horizon: Horizon) -> f64 {
-        squares::gap(&self.squares(effects, horizon, Held::default(), |k| self.judges(k)))
+        squares::gap(&self.squares(effects, horizon, 0.0, |k| self.judges(k)))
     }
 
     /// The same signal by signal.
     #[must_use]
     pub fn gap_by_signal(&self, effects: &Effects, horizon: Horizon) -> Vec<(Quantity, f64)> {
-        let squares = self.squares(effects, horizon, Held::default(), |k| self.judges(k));
+        let squares = self.squares(effects, horizon, 0.0, |k| self.judges(k));
         Quantity::ALL.into_iter().zip(squares::by_signal(&squares)).collect()
     }
 
@@ -144,41 +150,58 @@ impl HowFar {
         Shrink { one_step, five_s, run, interval: [one, five, whole] }
     }
 
-    fn gaps(&self, effects: &Effects) -> Gaps {
+    fn gaps(&self, effects: &Effects, since_s: f64) -> Gaps {
         let judged: Vec<&Course> =
             (0..self.courses.len()).filter(|&k| self.judges(k)).map(|k| &self.courses[k]).collect();
+        let ahead = |course: &&Course| {
+            let of = |effects| one_step::ahead(&course.signals, &self.machine, effects);
+            let after = of(effects);
+            if since_s > 0.0 { one_step::splice(of(&self.believed), after, since_s) } else { after }
+        };
+        let squares = |horizon| self.squares(effects, horizon, since_s, |k| self.judges(k));
         let ((ahead, five_s), run) = rayon::join(
-            || {
-                let ahead = judged
-                    .par_iter()
-                    .map(|course| one_step::ahead(&course.signals, &self.machine, effects))
-                    .collect();
-                let held = Held::default();
-                (ahead, self.squares(effects, Horizon::FiveSeconds, held, |k| self.judges(k)))
-            },
-            || self.squares(effects, Horizon::Run, Held::default(), |k| self.judges(k)),
+            || (judged.par_iter().map(ahead).collect(), squares(Horizon::FiveSeconds)),
+            || squares(Horizon::Run),
         );
         Gaps { ahead, five_s, run }
     }
 
-    /// Squared errors on the runs that `of` names, in order.
+    /// Squared errors on the runs that `of` names, in order; with `effects` from `since_s` on.
     fn squares(
         &self,
         effects: &Effects,
         horizon: Horizon,
-        held: Held,
+        since_s: f64,
+        of: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<Squares> {
+        let both = [&self.believed, effects];
+        let foretell =
+            |course: &Course| course.foretell_since(&self.machine, both, since_s, horizon);
+        self.squares_of(&foretell, horizon, of)
+    }
+
+    /// Squared errors of what is foretold of the runs that `of` names, in order.
+    fn squares_of(
+        &self,
+        foretell: &(dyn Fn(&Course) -> Vec<Stretch> + Sync),
+        horizon: Horizon,
         of: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Squares> {
         let blocks = |(k, course): (usize, &Course)| {
-            if !of(k) {
-                return Vec::new();
-            }
-            let foretold = course.foretell(&self.machine, effects, horizon, held);
+            let foretold = if of(k) { foretell(course) } else { Vec::new() };
             let stretches = foretold.iter();
-            stretches.flat_map(|s| squares::of_stretch(&course.measured, s, horizon)).collect()
+            let blocks: Vec<Squares> =
+                stretches.flat_map(|s| squares::of_stretch(&course.measured, s, horizon)).collect();
+            blocks
         };
         self.courses.par_iter().enumerate().flat_map_iter(blocks).collect()
     }
+}
+
+/// When the first of `causes` begins in a run, s.
+fn since_s(causes: &[Cause]) -> f64 {
+    let begins = |cause: &Cause| cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
+    causes.iter().map(begins).fold(f64::MAX, f64::min).max(0.0)
 }
 
 /// The overlay that puts `causes` into a simulator, each with the best value of its parameters.

@@ -39,7 +39,7 @@ impl HowFar {
         for (k, cause) in diagnosis.causes.iter_mut().enumerate() {
             let stands = stood_by.contains(&k);
             if stands || k < ALSO_TOLD {
-                let shrink = || self.shrink(&self.with(core::slice::from_ref(cause)));
+                let shrink = || self.shrink_by(core::slice::from_ref(cause));
                 cause.shrink = Some(alone.filter(|_| stands).unwrap_or_else(shrink));
             }
         }

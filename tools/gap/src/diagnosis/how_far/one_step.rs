@@ -12,6 +12,9 @@ use super::squares::{BLOCK, Squares};
 use crate::diagnosis::generator::{Generator, Residual, Signal};
 use crate::diagnosis::signals::Signals;
 
+/// Time between two samples of a residual, s.
+const SAMPLE_S: f64 = 0.1;
+
 /// What every block's signal lacks a tenth of a second ahead, in floors; `NaN` where nothing can be said.
 pub(super) type Ahead = Vec<(Signal, Vec<f64>)>;
 
@@ -36,6 +39,17 @@ pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> Ahead 
     };
     let all = Generator::all().into_iter();
     all.flat_map(|generator| generator.residuals(s, machine, effects)).map(of).collect()
+}
+
+/// `before` until `since_s`, `after` from then on.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) fn splice(before: Ahead, mut after: Ahead, since_s: f64) -> Ahead {
+    let since = (since_s / SAMPLE_S).ceil() as usize;
+    for ((_, after), (_, before)) in after.iter_mut().zip(before) {
+        let until = since.min(after.len()).min(before.len());
+        after[..until].copy_from_slice(&before[..until]);
+    }
+    after
 }
 
 /// Squares of several residuals, the wheels' speeds taken together. Two that differ in what can be

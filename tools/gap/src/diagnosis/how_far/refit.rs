@@ -10,13 +10,13 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use xt28_machine::Machine;
+use xt28_sim::Effects;
 use xt28_sim::effects::{Parameter, Scope};
-use xt28_sim::{Effects, Held};
 
-use super::HowFar;
 use super::course::{Horizon, WIDTH, floors};
 use super::squares::{self, BLOCK};
 use super::twin::Course;
+use super::{HowFar, since_s};
 use crate::diagnosis::knob::{Knob, TOLERANCES};
 use crate::diagnosis::verdict::{Cause, Estimate, Shrink};
 
@@ -56,10 +56,11 @@ struct Turn {
 }
 
 impl HowFar {
-    /// Fits the parameters of `causes` together, from the values they have.
+    /// Fits the parameters of `causes` together, from the values they have; where all of them begin in
+    /// the middle of the runs, from the first beginning on.
     #[must_use]
     pub fn refit(&self, causes: &[Cause]) -> Refit {
-        let turns = turns(causes);
+        let (turns, since_s) = (turns(causes), since_s(causes));
         let start: Vec<f64> = turns
             .iter()
             .map(|turn| {
@@ -69,11 +70,10 @@ impl HowFar {
                 estimate.map_or(turn.parameter.neutral, |e| e.value[0]).clamp(low, high)
             })
             .collect();
-        let (at, sigma) = self.descend(&turns, &start);
+        let (at, sigma) = self.descend(&turns, &start, since_s);
         let fit_gap = |values: &[f64]| {
             let effects = self.turned(&turns, values);
-            let held = Held::default();
-            squares::gap(&self.squares(&effects, Horizon::FiveSeconds, held, |k| self.fits(k)))
+            squares::gap(&self.squares(&effects, Horizon::FiveSeconds, since_s, |k| self.fits(k)))
         };
         let (before, after) = rayon::join(|| fit_gap(&start), || fit_gap(&at));
         let (at, after) = if after <= before { (at, after) } else { (start, before) };
@@ -85,15 +85,16 @@ impl HowFar {
             let value = [*value, end(-1.0), end(1.0)];
             estimates[turn.cause].push(Estimate { name: turn.parameter.name, value });
         }
-        Refit { shrink: self.shrink(&effects), effects, estimates, fit_gap: [before, after] }
+        let shrink = self.shrink_of(&self.gaps(&effects, since_s));
+        Refit { shrink, effects, estimates, fit_gap: [before, after] }
     }
 
     /// What `effects` leave on the fit runs over 5 s, neighbours at their best: sum of squares in
     /// floors, each error counted as often as it is drawn anew. Differences of 2 are worth naming.
     #[must_use]
     pub fn cost(&self, effects: &Effects) -> f64 {
-        let errors = self.errors(&self.machine, effects);
-        let (slopes, _) = self.neighbours(effects, &errors);
+        let errors = self.errors(&self.machine, effects, 0.0);
+        let (slopes, _) = self.neighbours(effects, &errors, 0.0);
         let (squares, gradient, matrix) = normal(&slopes, &errors);
         let matrix = matrix + DMatrix::identity(slopes.len(), slopes.len());
         let step = Cholesky::new(matrix).expect("a sum of squares and the identity");
@@ -114,7 +115,7 @@ impl HowFar {
     }
 
     /// Weighted errors of the fit runs, made robust; one number a sample and channel.
-    fn errors(&self, machine: &Machine, effects: &Effects) -> Vec<f64> {
+    fn errors(&self, machine: &Machine, effects: &Effects, since_s: f64) -> Vec<f64> {
         let runs: Vec<&Course> = self
             .courses
             .iter()
@@ -122,11 +123,17 @@ impl HowFar {
             .filter(|(k, _)| self.fits(*k))
             .map(|(_, course)| course)
             .collect();
-        runs.par_iter().flat_map_iter(|course| errors(course, machine, effects)).collect()
+        let both = [&self.believed, effects];
+        runs.par_iter().flat_map_iter(|course| errors(course, machine, both, since_s)).collect()
     }
 
     /// Slopes of the errors by each neighbour, a tolerance each.
-    fn neighbours(&self, effects: &Effects, errors: &[f64]) -> (Vec<Vec<f64>>, Vec<Knob>) {
+    fn neighbours(
+        &self,
+        effects: &Effects,
+        errors: &[f64],
+        since_s: f64,
+    ) -> (Vec<Vec<f64>>, Vec<Knob>) {
         let knobs: Vec<Knob> = TOLERANCES
             .iter()
             .filter(|tolerance| NEIGHBOURS.contains(&tolerance.name))
@@ -135,23 +142,23 @@ impl HowFar {
         let slope = |knob: &Knob| {
             let (mut machine, mut effects) = (self.machine.clone(), effects.clone());
             knob.set(&mut machine, &mut effects, knob.neutral() + knob.tolerance());
-            difference(&self.errors(&machine, &effects), errors, 1.0)
+            difference(&self.errors(&machine, &effects, since_s), errors, 1.0)
         };
         (knobs.par_iter().map(slope).collect(), knobs)
     }
 
     /// Best values, and the standard deviation of each.
-    fn descend(&self, turns: &[Turn], start: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn descend(&self, turns: &[Turn], start: &[f64], since_s: f64) -> (Vec<f64>, Vec<f64>) {
         let effects_at = |values: &[f64]| self.turned(turns, values);
         let mut at = start.to_vec();
-        let mut errors = self.errors(&self.machine, &effects_at(&at));
-        let (beside, knobs) = self.neighbours(&effects_at(&at), &errors);
+        let mut errors = self.errors(&self.machine, &effects_at(&at), since_s);
+        let (beside, knobs) = self.neighbours(&effects_at(&at), &errors, since_s);
         // Neighbours as they were believed when `errors` were made, tolerances.
         let mut gave = DVector::<f64>::zeros(knobs.len());
         let mut damping = 1.0e-3;
         let mut sigma = vec![0.0; turns.len()];
         for _ in 0..ROUNDS {
-            let slopes = self.slopes(turns, &at, &gave, &knobs, &errors);
+            let slopes = self.slopes((turns, since_s), &at, &gave, &knobs, &errors);
             let all: Vec<Vec<f64>> = slopes.into_iter().chain(beside.iter().cloned()).collect();
             let (squares, mut gradient, mut matrix) = normal(&all, &errors);
             for (k, gave) in gave.iter().enumerate() {
@@ -171,7 +178,7 @@ impl HowFar {
                 let moved: Vec<f64> = turns.iter().zip(&at).zip(step.iter()).map(move_by).collect();
                 let giving = &gave + step.rows(turns.len(), knobs.len());
                 let (machine, effects) = self.given(&knobs, &giving, effects_at(&moved));
-                let trial = self.errors(&machine, &effects);
+                let trial = self.errors(&machine, &effects, since_s);
                 let after = sum(&trial) + giving.norm_squared();
                 if after < cost {
                     gained = 1.0 - after / cost;
@@ -206,7 +213,7 @@ impl HowFar {
     /// Slopes of the errors by each parameter, in tolerances.
     fn slopes(
         &self,
-        turns: &[Turn],
+        (turns, since_s): (&[Turn], f64),
         at: &[f64],
         gave: &DVector<f64>,
         knobs: &[Knob],
@@ -221,7 +228,11 @@ impl HowFar {
             let mut moved = at.to_vec();
             moved[k] += nudge;
             let (machine, effects) = self.given(knobs, gave, self.turned(turns, &moved));
-            difference(&self.errors(&machine, &effects), errors, nudge / parameter.tolerance)
+            difference(
+                &self.errors(&machine, &effects, since_s),
+                errors,
+                nudge / parameter.tolerance,
+            )
         };
         (0..turns.len()).into_par_iter().map(slope).collect()
     }
@@ -243,9 +254,9 @@ fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
 }
 
 /// Errors of one run.
-fn errors(course: &Course, machine: &Machine, effects: &Effects) -> Vec<f64> {
+fn errors(course: &Course, machine: &Machine, both: [&Effects; 2], since_s: f64) -> Vec<f64> {
     let floors = floors(Horizon::FiveSeconds);
-    let foretold = course.foretell(machine, effects, Horizon::FiveSeconds, Held::default());
+    let foretold = course.foretell_since(machine, both, since_s, Horizon::FiveSeconds);
     let mut errors = Vec::new();
     for stretch in &foretold {
         for (measured, ours) in course.measured[stretch.from..].iter().zip(&stretch.rows) {

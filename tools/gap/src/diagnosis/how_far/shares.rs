@@ -7,6 +7,7 @@ use xt28_sim::effects::Block;
 use super::HowFar;
 use super::course::Horizon;
 use super::squares;
+use super::twin::Course;
 
 /// Blocks whose output can be taken from the log, in the order of the bits of a combination.
 const PLAYERS: [Block; 3] = [Block::Arms, Block::Steering, Block::Drive];
@@ -26,7 +27,10 @@ impl HowFar {
             .map(|set| {
                 let has = |bit: usize| set >> bit & 1 == 1;
                 let held = Held { arms: has(0), joints: has(1), drive: has(2) };
-                let blocks = self.squares(&self.believed, Horizon::FiveSeconds, held, |_| true);
+                let horizon = Horizon::FiveSeconds;
+                let foretell =
+                    |c: &Course| c.foretell(&self.machine, &self.believed, horizon, held);
+                let blocks = self.squares_of(&foretell, horizon, |_| true);
                 squares::gap(&blocks)
             })
             .collect();

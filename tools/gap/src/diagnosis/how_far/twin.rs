@@ -93,6 +93,28 @@ impl Course {
         })
     }
 
+    /// The machine with `before` until `since_s` in the run and with `effects` from then on.
+    ///
+    /// A stretch that begins later has them from its start. One that begins earlier goes over from one
+    /// machine to the other, whose way is shifted to where the first one is: what else the second had
+    /// become by then it keeps, which is little where what it does passes within seconds.
+    pub(super) fn foretell_since(
+        &self,
+        machine: &Machine,
+        [before, effects]: [&Effects; 2],
+        since_s: f64,
+        horizon: Horizon,
+    ) -> Vec<Stretch> {
+        let foretell = |effects| self.foretell(machine, effects, horizon, Held::default());
+        if since_s <= 0.0 {
+            return foretell(effects);
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let since = (since_s / (DT_S * STRIDE as f64)).ceil() as usize;
+        let both = foretell(before).into_iter().zip(foretell(effects));
+        both.map(|(before, after)| splice(before, &after, since)).collect()
+    }
+
     /// The machine with `effects`, foretold over the run; blocks of `held` put out what was measured.
     pub(super) fn foretell(
         &self,
@@ -206,5 +228,42 @@ impl<'a> Bench<'a> {
             self.next_frame += 1;
         }
         now
+    }
+}
+
+/// `before` up to sample `since` of the run, `after` from there on, its way shifted to go on from there.
+fn splice(mut before: Stretch, after: &Stretch, since: usize) -> Stretch {
+    let from = since.saturating_sub(before.from).min(before.rows.len());
+    let mut shift = [0.0; 2];
+    if let (Some(last), true) = (from.checked_sub(1), from < before.rows.len()) {
+        let columns = Quantity::Position.columns();
+        for (shift, c) in shift.iter_mut().zip(columns) {
+            let apart = before.rows[last][c] - after.rows[last][c];
+            *shift = if apart.is_finite() { apart } else { 0.0 };
+        }
+    }
+    for (ours, theirs) in before.rows[from..].iter_mut().zip(&after.rows[from..]) {
+        *ours = *theirs;
+        ours[Quantity::Position.columns()].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
+    }
+    before
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::course::WIDTH;
+    use super::*;
+
+    #[test]
+    fn a_machine_goes_over_at_the_instant_and_from_its_place() {
+        let stretch = |value: f64| Stretch { from: 10, rows: vec![[value; WIDTH]; 5] };
+        let spliced = splice(stretch(1.0), &stretch(4.0), 12);
+        let (stroke, east) = (0, Quantity::Position.columns().start);
+        let of = |c: usize| spliced.rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
+        assert_eq!(of(stroke), [1.0, 1.0, 4.0, 4.0, 4.0]);
+        assert_eq!(of(east), [1.0; 5]);
+        let all = splice(stretch(1.0), &stretch(4.0), 3);
+        assert_eq!((all.rows[0][stroke], all.rows[0][east]), (4.0, 4.0));
+        assert_eq!(splice(stretch(1.0), &stretch(4.0), 99).rows, stretch(1.0).rows);
     }
 }

@@ -72,6 +72,16 @@ pub enum GapError {
     /// The log is not candump's, or is cut.
     #[error(transparent)]
     Log(#[from] ReadError),
+    /// An MCAP file that cannot be read, or holds no CAN frames.
+    #[error("{log}: at message {message}: {problem}")]
+    Recording {
+        /// The file.
+        log: String,
+        /// Message in it, from 1.
+        message: u64,
+        /// What is wrong there, and what to do.
+        problem: String,
+    },
     /// The log holds no sample of something that a replay needs.
     #[error(
         "{log}: no frame `{message}` in the log, which {channel} comes from, though {known} of its {frames} frames are known; check that log and DBC belong together"

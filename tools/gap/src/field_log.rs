@@ -1,8 +1,8 @@
-//! A field log as time series: candump, plain or gzipped, read through the log's own DBC.
+//! A field log as time series: candump, plain or gzipped, or MCAP, read through the log's own DBC.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,6 +13,7 @@ use xt28_dbc_model::ValueError;
 use xt28_machine::SimTime;
 
 use crate::decoder::Tap;
+use crate::recorded::{self, MAGIC};
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
 
 /// First two bytes of gzip (RFC 1952); no candump line begins so.
@@ -39,12 +40,15 @@ impl FieldLog {
     /// as ending before it, and says so in [`FieldLog::faults`].
     ///
     /// # Errors
-    /// [`GapError::Read`], [`GapError::Log`], or [`GapError::Silent`].
+    /// [`GapError::Read`], [`GapError::Log`], [`GapError::Recording`], or [`GapError::Silent`].
     pub fn load(path: &Path, decoder: &Decoder, accept_cut: bool) -> Result<Self, GapError> {
         let file = File::open(path).map_err(|source| GapError::read(path, source))?;
         let mut input = BufReader::new(file);
         let head = input.fill_buf().map_err(|source| GapError::read(path, source))?;
         let name = path.display().to_string();
+        if head.starts_with(MAGIC) {
+            return Self::read_mcap(input, &name, decoder, accept_cut);
+        }
         if head.starts_with(&GZIP_MAGIC) {
             let input = BufReader::new(MultiGzDecoder::new(input));
             Self::read(input, &name, decoder, accept_cut)
@@ -70,7 +74,37 @@ impl FieldLog {
             intake.take(decoder, &record, reader.line());
         }
         let cut = reader.cut_line().map(|line| (line, FaultKind::Cut));
-        intake.finish(name.into(), decoder, cut)
+        intake.finish(name.into(), decoder, cut.into_iter().collect())
+    }
+
+    /// Reads a log from an MCAP file's bytes; `name` is its name in errors.
+    ///
+    /// # Errors
+    /// [`GapError::Recording`] or [`GapError::Silent`].
+    pub fn read_mcap(
+        input: impl Read,
+        name: &str,
+        decoder: &Decoder,
+        accept_cut: bool,
+    ) -> Result<Self, GapError> {
+        let mut intake = Intake::default();
+        let remains = recorded::read(input, name, accept_cut, |record, number| {
+            intake.take(decoder, record, number);
+        })?;
+        let cut = remains.cut.map(|number| (number, FaultKind::Cut));
+        let broken = remains
+            .broken
+            .map(|(number, problem, messages)| (number, FaultKind::Broken { problem, messages }));
+        intake.finish(name.into(), decoder, cut.into_iter().chain(broken).collect())
+    }
+
+    /// A log of `series` that nobody recorded, `duration_s` s long.
+    pub(crate) fn of_series(
+        name: &str,
+        series: BTreeMap<Channel, Series>,
+        duration_s: f64,
+    ) -> Self {
+        Self { name: name.into(), series, faults: Vec::new(), frames: 0, duration_s }
     }
 
     /// The log's name, as in errors.
@@ -197,7 +231,7 @@ impl Intake {
         self,
         name: Arc<str>,
         decoder: &Decoder,
-        cut: Option<(u64, FaultKind)>,
+        mut kinds: Vec<(u64, FaultKind)>,
     ) -> Result<FieldLog, GapError> {
         if self.known_frames == 0 && self.frames > 0 {
             return Err(self.stranger(&name));
@@ -213,7 +247,6 @@ impl Intake {
                 });
             }
         }
-        let mut kinds: Vec<(u64, FaultKind)> = cut.into_iter().collect();
         if let Some((line, by_s, frames)) = self.back {
             kinds.push((line, FaultKind::ClockBack { by_s, frames }));
         }

@@ -27,6 +27,7 @@ mod log_fault;
 mod mapping;
 mod overlay;
 pub mod page;
+mod recorded;
 mod replay;
 mod report;
 mod runs;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 pub struct LogFault {
     /// The log's name.
     pub log: Arc<str>,
-    /// Line of the first occurrence, from 1.
+    /// Line of the first occurrence, from 1; of an MCAP file, which has none, the message.
     pub line: u64,
     /// What it is.
     pub kind: FaultKind,
@@ -32,6 +32,13 @@ pub enum FaultKind {
         by_s: f64,
         /// How often.
         times: u64,
+    },
+    /// Messages of a recording are no CAN frames, though of their type; they are left out.
+    Broken {
+        /// What is wrong with the first.
+        problem: String,
+        /// Messages left out.
+        messages: u64,
     },
     /// Frames of a cyclic message are not there.
     Dropped {
@@ -70,7 +77,7 @@ impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: ", self.log, self.line)?;
         match &self.kind {
-            FaultKind::Cut => write!(f, "log is cut in the middle of this line; it is left out"),
+            FaultKind::Cut => write!(f, "log is cut here; what is not whole is left out"),
             FaultKind::ClockBack { by_s, frames } => write!(
                 f,
                 "clock jumps back by {by_s:.6} s; {frames} frames are left out until it has caught up, so cut the log there if they matter"
@@ -79,6 +86,9 @@ impl fmt::Display for LogFault {
                 f,
                 "no frame of any kind for {by_s:.3} s before this line, {times} times so in this log; the values before are held, so cut the log there if the clock jumped"
             ),
+            FaultKind::Broken { problem, messages } => {
+                write!(f, "no CAN frame: {problem}; {messages} such messages are left out")
+            }
             FaultKind::Dropped { message, gaps, frames, longest_s } => write!(
                 f,
                 "{message} is missing {frames} frames in {gaps} gaps from here on, the longest {:.1} ms; the value before is held",

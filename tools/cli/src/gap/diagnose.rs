@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_gap::diagnosis::{Details, Diagnosis, Inquiry, Progress, Verdict as Answer};
+use xt28_gap::diagnosis::{Details, Diagnosis, Inquiry, Progress, Verdict as Answer, next_drive};
 use xt28_gap::page::Subject;
 use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
 use xt28_machine::Machine;
@@ -24,7 +24,7 @@ use crate::{Failure, Verdict};
 /// --fit and --held, about.toml says what is fitted on; without it, the last third is held out.
 #[derive(Args)]
 pub(crate) struct Diagnose {
-    /// candump logs of one machine, plain or gzipped
+    /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames
     #[arg(required = true)]
     logs: Vec<PathBuf>,
     /// DBC that the logs were sent with
@@ -57,9 +57,13 @@ pub(crate) struct Diagnose {
     /// Go on where commands and readings of the arms look like those of different wheels
     #[arg(long)]
     accept_wheel_order: bool,
-    /// Do not say how far the gap shrinks, which is the longest part of the work
+    /// Do not say how far the gap shrinks, nor (without --next) what to drive next: the longest part
     #[arg(long)]
     no_how_far: bool,
+    /// Write the test drive that would tell most into this file (TOML), for `xt28 run`, and its script
+    /// beside it
+    #[arg(long, value_name = "OUT")]
+    next: Option<PathBuf>,
     /// Write the answer as JSON into this file
     #[arg(long, value_name = "OUT")]
     json: Option<PathBuf>,
@@ -83,6 +87,10 @@ impl Diagnose {
             bar.set_position((progress.done.clamp(0.0, 1.0) * 1e3) as u64);
         };
         let mut diagnosis = inquiry.diagnose(&show);
+        if !self.no_how_far || self.next.is_some() {
+            bar.set_message("looking for the next test drive");
+            self.look_ahead(&inquiry, &mut diagnosis)?;
+        }
         bar.finish_and_clear();
         diagnosis.notes.splice(0..0, notes);
         diagnosis.seconds = start.elapsed().as_secs_f64();
@@ -110,6 +118,19 @@ impl Diagnose {
         inquiry.believed = believed.effects();
         inquiry.how_far = !self.no_how_far;
         Ok((inquiry, notes))
+    }
+
+    /// Says what to drive next, and writes it.
+    fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
+        let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)? else { return Ok(()) };
+        if let Some(path) = &self.next {
+            let script = path.with_extension("script.toml");
+            let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            write(&script, &manoeuvre.script())?;
+            write(path, &manoeuvre.scenario(&name, &next.separates.join(", ")))?;
+        }
+        diagnosis.next = Some(next);
+        Ok(())
     }
 
     /// What speaks of the logs, where anything does.
@@ -142,14 +163,19 @@ impl Diagnose {
         });
         for file in [json, report, overlay].into_iter().flatten() {
             let (path, text) = file?;
-            std::fs::write(path, text).map_err(|error| {
-                let path = path.display();
-                format!("{path}: cannot write: {error}; give a folder that exists and has room")
-            })?;
-            eprintln!("wrote {}", path.display());
+            write(path, &text)?;
         }
         Ok(())
     }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| {
+        let path = path.display();
+        format!("{path}: cannot write: {error}; give a folder that exists and has room")
+    })?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
 }
 
 /// Which runs were fitted on, and who chose so.

@@ -1,0 +1,133 @@
+//! What to drive next: the scripted manoeuvre that would best tell the remaining causes apart.
+//!
+//! Every manoeuvre is driven on our own machine under every leading cause at its fitted size. The
+//! blocks are then driven with what that machine did, under its own cause and under each rival's. Half
+//! the square of how far the two residuals lie apart, in floors and with correlated samples counted
+//! once, is the logarithm of the odds that the drive is expected to give against the rival (the mean
+//! log likelihood ratio of two Gaussians). A manoeuvre is worth what it gives in its worst case, the
+//! pair that it tells apart least.
+
+mod manoeuvre;
+
+use rayon::prelude::*;
+use xt28_sim::{Effects, Solver, Terrain};
+
+use super::generator::Generator;
+use super::inquiry::Inquiry;
+use super::signals::Signals;
+use super::verdict::{Cause, Diagnosis, Next};
+use crate::{FieldLog, GapError, Replay};
+
+pub use manoeuvre::Manoeuvre;
+
+/// Causes that are told apart, at most.
+const RIVALS: usize = 3;
+/// A cause below this probability is no rival, unless it is the only one.
+const RIVAL_MIN: f64 = 0.02;
+
+/// A hypothesis in the running.
+struct Rival {
+    name: &'static str,
+    effects: Effects,
+}
+
+/// The manoeuvre worth most, with what it separates; `None` where no two hypotheses remain.
+///
+/// # Errors
+/// [`GapError::Command`] where our own bus could not say a manoeuvre's command.
+pub fn next_drive(
+    inquiry: &Inquiry,
+    diagnosis: &Diagnosis,
+) -> Result<Option<(Next, Manoeuvre)>, GapError> {
+    let rivals = rivals(inquiry, diagnosis);
+    if rivals.len() < 2 {
+        return Ok(None);
+    }
+    let worth = |manoeuvre: Manoeuvre| Ok((worth(inquiry, &rivals, &manoeuvre)?, manoeuvre));
+    let ranked: Vec<(f64, Manoeuvre)> =
+        Manoeuvre::all().into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
+    let best = ranked.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(best.map(|(nats, manoeuvre)| {
+        let separates = rivals.iter().map(|rival| rival.name).collect();
+        (Next { manoeuvre: manoeuvre.name.to_owned(), separates, nats }, manoeuvre)
+    }))
+}
+
+/// The least certain of the causes stood by, or the likeliest of all, and what may be in its place;
+/// the other causes stood by are believed.
+fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
+    let stood: Vec<&Cause> = diagnosis.stood_by().collect();
+    let Some(leader) = stood.last().copied().or_else(|| diagnosis.causes.first()) else {
+        return Vec::new();
+    };
+    let mut base = inquiry.believed.clone();
+    let apply = |effects: &mut Effects, cause: &Cause| {
+        for estimate in &cause.parameters {
+            if let Some(parameter) = cause.effect.parameter(estimate.name) {
+                let [low, high] = parameter.range;
+                parameter.set(effects, cause.scope, estimate.value[0].clamp(low, high));
+            }
+        }
+    };
+    for other in stood.iter().filter(|cause| cause.effect != leader.effect) {
+        apply(&mut base, other);
+    }
+    let mut rivals: Vec<Rival> = Vec::new();
+    let others = diagnosis.causes.iter().filter(|cause| {
+        let stands = stood.iter().any(|stood| stood.effect == cause.effect);
+        let likely = cause.probability > RIVAL_MIN || leader.class.contains(&cause.effect.name);
+        !stands && cause.effect != leader.effect && likely
+    });
+    for cause in std::iter::once(leader).chain(others) {
+        if rivals.len() < RIVALS && rivals.iter().all(|rival| rival.name != cause.effect.name) {
+            let mut effects = base.clone();
+            apply(&mut effects, cause);
+            rivals.push(Rival { name: cause.effect.name, effects });
+        }
+    }
+    if rivals.len() < 2 || diagnosis.probability_none > RIVAL_MIN {
+        rivals.push(Rival { name: "none", effects: base });
+    }
+    rivals
+}
+
+/// The least that a manoeuvre is expected to give between any two rivals, nats.
+fn worth(inquiry: &Inquiry, rivals: &[Rival], manoeuvre: &Manoeuvre) -> Result<f64, GapError> {
+    let log = manoeuvre.commands();
+    let mut least = f64::INFINITY;
+    for truth in rivals {
+        let signals = driven(inquiry, &log, &truth.effects)?;
+        for other in rivals.iter().filter(|other| other.name != truth.name) {
+            least = least.min(apart(inquiry, &signals, &truth.effects, &other.effects));
+        }
+    }
+    Ok(least)
+}
+
+/// What our machine shows on a manoeuvre's commands.
+fn driven(inquiry: &Inquiry, log: &FieldLog, effects: &Effects) -> Result<Signals, GapError> {
+    let replay = Replay::run(log, &inquiry.machine, effects, Solver::Reduced, &Terrain::Flat)?;
+    let mut series = replay.all_series().clone();
+    for (channel, samples) in log.all_series() {
+        if channel.is_command() {
+            series.insert(*channel, samples.clone());
+        }
+    }
+    Signals::of_series(log.name(), &series, log.duration_s(), Terrain::Flat)
+}
+
+/// Half the squared distance of every block's residuals under two beliefs, nats.
+fn apart(inquiry: &Inquiry, signals: &Signals, own: &Effects, other: &Effects) -> f64 {
+    let of = |generator: Generator| -> f64 {
+        let residuals = |effects| generator.residuals(signals, &inquiry.machine, effects);
+        let pairs = residuals(own).into_iter().zip(residuals(other));
+        pairs
+            .map(|(own, other)| {
+                let steps = own.values.iter().zip(&other.values).map(|(a, b)| a - b);
+                let squares = steps.filter(|step| step.is_finite()).map(|step| step * step);
+                own.signal.weight() * squares.sum::<f64>()
+            })
+            .sum()
+    };
+    0.5 * Generator::all().into_iter().map(of).sum::<f64>()
+}

@@ -3,13 +3,17 @@
 //! The distance to a surface of triangles has a local minimum at a corner if it grows along every
 //! edge that leaves it, on an edge if it grows into both triangles beside it, in a triangle if the
 //! foot of the perpendicular lies in it. These conditions are exact, and each is a product or two.
-//! Blocks and cells of the grid that lie too deep for the ball are passed over by their top.
+//! Blocks and cells of the grid that lie too deep for the ball are passed over by their top, and of a
+//! block all cells but those where the ground is as steep as the line to the centre.
 
 use crate::grid::{BLOCK, PER_M, SPACING_M};
 use crate::{Grid, Nearest};
 
 /// Slack of the conditions, m²: on the border between two features, both may hold, never neither.
 const SLACK_M2: f64 = 1e-12;
+
+/// Slack of where feet can lie, m: a foot on a border belongs to the cells on both sides.
+const SLACK_M: f64 = 1e-9;
 
 /// One search around a centre above the ground; every minimum found goes to `keep`.
 pub(crate) struct Search<'a, K> {
@@ -95,17 +99,24 @@ impl<'a, K: FnMut(Nearest)> Search<'a, K> {
         for row in rows[0] / BLOCK..=rows[1] / BLOCK {
             for column in columns[0] / BLOCK..=columns[1] / BLOCK {
                 let [x, y] = view.plan_m(column * BLOCK, row * BLOCK);
-                let under = self.centre_m[2] - f64::from(self.grid.block_top_m(column, row));
-                let under2 = if under > 0.0 { under * under } else { 0.0 };
+                let block = self.grid.block(column, row);
+                let under_m = larger(self.centre_m[2] - f64::from(block.top_m), 0.0);
                 // The ball cuts this deep a plane in a disc; only cells under the disc matter.
-                let disc2 = self.reach_m2 - under2;
+                let disc2 = self.reach_m2 - under_m * under_m;
                 if gap2(x, side_m) + gap2(y, side_m) <= disc2 {
                     let disc_m = disc2.sqrt();
-                    let [c, r] = view.cells_within(disc_m);
-                    let within = |block: usize, cells: [usize; 2]| {
-                        [cells[0].max(block * BLOCK), cells[1].min(block * BLOCK + BLOCK - 1)]
+                    let below_m = [under_m, self.reach_m];
+                    let window = |axis: usize, block: usize, rise: [f32; 2]| {
+                        let [low_m, high_m] = feet_m(rise, below_m);
+                        let [low, high] = view.cells[axis];
+                        let block = [low.max(block * BLOCK), high.min(block * BLOCK + BLOCK - 1)];
+                        view.cells_within(axis, block, [larger(low_m, -disc_m), high_m.min(disc_m)])
                     };
-                    self.cells(view, [within(column, c), within(row, r)]);
+                    let columns = window(0, column, block.rise_x);
+                    let rows = window(1, row, block.rise_y);
+                    if let (Some(columns), Some(rows)) = (columns, rows) {
+                        self.cells(view, [columns, rows]);
+                    }
                 }
             }
         }
@@ -211,6 +222,16 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// How far aside of the centre a minimum on triangles with this rise along an axis can lie, m, if it
+/// lies `below_m` (from and to) below: the line to it leans as some of the triangles that it is on.
+fn feet_m(rise: [f32; 2], below_m: [f64; 2]) -> [f64; 2] {
+    let [low, high] = rise.map(f64::from);
+    let [near, far] = below_m;
+    let least = low * if low < 0.0 { far } else { near };
+    let most = high * if high < 0.0 { near } else { far };
+    [least - SLACK_M, most + SLACK_M]
+}
+
 /// The foot of the perpendicular on an edge from `corner` along `along`, if it lies within; `grows`
 /// is their product.
 fn on_edge(corner: [f64; 3], along: [f64; 3], grows: f64) -> Option<[f64; 3]> {
@@ -230,14 +251,12 @@ impl View<'_> {
         [x0 + column as f64 * SPACING_M, y0 + row as f64 * SPACING_M]
     }
 
-    /// Those of its cells that lie within `disc_m` of the centre along each axis.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    fn cells_within(&self, disc_m: f64) -> [[usize; 2]; 2] {
-        std::array::from_fn(|axis| {
-            let [low, high] = self.cells[axis];
-            let at = |m: f64| ((m - self.first_m[axis]) * PER_M) as usize;
-            [low.max(at(-disc_m)), high.min(at(disc_m))]
-        })
+    /// Those of the cells `from` to `to` along an axis that have a part in a stretch from the centre.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
+    fn cells_within(&self, axis: usize, [from, to]: [usize; 2], m: [f64; 2]) -> Option<[usize; 2]> {
+        let at = |m: f64| ((m - self.first_m[axis]) * PER_M).floor() as i64;
+        let (low, high) = (at(m[0]).max(from as i64), at(m[1]).min(to as i64));
+        (low <= high).then_some([low as usize, high as usize])
     }
 
     fn cell(&self, column: usize, row: usize, z: f64) -> Cell {

@@ -119,7 +119,9 @@ impl Balance<'_> {
     /// Writes the derivative of the residual; the contacts keep their part of it.
     fn fill(&self, out: &mut Matrix, rate: &Generalized, contacts: &mut [Contact], coupled: bool) {
         out.hinge = self.hinge;
-        out.bodies.clone_from(self.inertias);
+        // The arms are as they were: factoring leaves them.
+        out.bodies.frame = self.inertias.frame;
+        out.bodies.wheel = self.inertias.wheel;
         for i in 0..6 {
             out.hinge[WHEELS + i] += self.brake_slope(i, rate);
         }

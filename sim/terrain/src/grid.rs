@@ -129,7 +129,7 @@ impl Grid {
     /// The column and row of the cell that a point lies in, counted on beyond the grid.
     #[allow(clippy::cast_possible_truncation)]
     pub(crate) fn cell(&self, x_m: f64, y_m: f64) -> [i64; 2] {
-        let index = |m: f64, first: i64| ((m * PER_M).floor() as i64).saturating_sub(first);
+        let index = |m: f64, first: i64| floor(m * PER_M).saturating_sub(first);
         [index(x_m, self.first[0]), index(y_m, self.first[1])]
     }
 
@@ -178,6 +178,14 @@ impl fmt::Debug for Grid {
             .field("beyond", &self.beyond)
             .finish_non_exhaustive()
     }
+}
+
+/// The integer at or below a number; a few instructions where `f64::floor` is a call.
+#[inline]
+#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)]
+pub(crate) fn floor(x: f64) -> i64 {
+    let towards_zero = x as i64;
+    if (towards_zero as f64) > x { towards_zero.saturating_sub(1) } else { towards_zero }
 }
 
 /// Blocks along a side of `points` grid points; the last may lack cells.

@@ -11,15 +11,15 @@
 use crate::{Grid, Nearest};
 
 /// Cells along a side of the window that a flood stays in: 1.6 m, more than any ball of the vehicle.
-const WINDOW: i64 = 16;
+const WINDOW: i16 = 16;
 /// Most edges that a flood has yet to cross.
-const OPEN_MAX: usize = 64;
+const OPEN_MAX: usize = 48;
 
-/// A triangle: its cell and whether it is the one above the cell's diagonal.
+/// A triangle: its cell in the window and whether it is the one above the cell's diagonal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Face {
-    column: i64,
-    row: i64,
+    column: i16,
+    row: i16,
     upper: bool,
 }
 
@@ -41,30 +41,24 @@ impl Grid {
         limit_m2: f64,
         pass_m2: &mut [f64],
     ) {
-        let mut flood = Flood::new(self, centre_m, self.face(from), limit_m2);
+        let mut flood = Flood::new(self, centre_m, from, limit_m2);
         let mut missing = to.len();
         pass_m2[..missing].fill(f64::INFINITY);
         let mut level_m2 = from.distance_m * from.distance_m;
         while missing > 0 {
             let Some(Shore { pass_m2: at_m2, beyond }) = flood.lowest() else { return };
+            if !flood.wet(beyond) {
+                continue;
+            }
             level_m2 = level_m2.max(at_m2);
             for (pass_m2, to) in pass_m2.iter_mut().zip(to) {
-                if *pass_m2 == f64::INFINITY && self.face(to) == beyond {
+                if *pass_m2 == f64::INFINITY && flood.face(to) == beyond {
                     *pass_m2 = level_m2;
                     missing -= 1;
                 }
             }
             flood.enter(beyond);
         }
-    }
-
-    /// The triangle of a point of the ground.
-    #[allow(clippy::cast_precision_loss)]
-    fn face(&self, at: &Nearest) -> Face {
-        let [x, y, _] = at.point_m;
-        let [column, row] = self.cell(x, y);
-        let [x0, y0] = self.plan_m(column, row);
-        Face { column, row, upper: y - y0 > x - x0 }
     }
 }
 
@@ -76,47 +70,63 @@ struct Flood<'a> {
     /// The window's first cell.
     first: [i64; 2],
     /// Triangles in the window that are wet or about to be, a bit each.
-    seen: [u64; (2 * WINDOW * WINDOW / 64) as usize],
+    seen: [u64; 2 * WINDOW as usize * WINDOW as usize / 64],
     open: [Shore; OPEN_MAX],
     count: usize,
 }
 
 impl<'a> Flood<'a> {
-    fn new(grid: &'a Grid, centre_m: [f64; 3], source: Face, limit_m2: f64) -> Self {
-        let start = Shore { pass_m2: 0.0, beyond: source };
-        Self {
+    fn new(grid: &'a Grid, centre_m: [f64; 3], source: &Nearest, limit_m2: f64) -> Self {
+        let [x, y, _] = source.point_m;
+        let nowhere = Face { column: 0, row: 0, upper: false };
+        let mut flood = Self {
             grid,
             centre_m,
             limit_m2,
-            first: [source.column - WINDOW / 2, source.row - WINDOW / 2],
-            seen: [0; (2 * WINDOW * WINDOW / 64) as usize],
-            open: [start; OPEN_MAX],
+            first: grid.cell(x, y).map(|cell| cell - i64::from(WINDOW / 2)),
+            seen: [0; 2 * WINDOW as usize * WINDOW as usize / 64],
+            open: [Shore { pass_m2: 0.0, beyond: nowhere }; OPEN_MAX],
             count: 1,
+        };
+        flood.open[0].beyond = flood.face(source);
+        flood
+    }
+
+    /// The triangle of a point of the ground.
+    #[allow(clippy::cast_possible_truncation)]
+    fn face(&self, at: &Nearest) -> Face {
+        let [x, y, _] = at.point_m;
+        let [column, row] = self.grid.cell(x, y);
+        let [x0, y0] = self.grid.plan_m(column, row);
+        let in_window = |cell: i64, first: i64| (cell - first).clamp(-1, i64::from(WINDOW)) as i16;
+        Face {
+            column: in_window(column, self.first[0]),
+            row: in_window(row, self.first[1]),
+            upper: y - y0 > x - x0,
         }
     }
 
     /// Takes the lowest place to go on at.
     fn lowest(&mut self) -> Option<Shore> {
         let open = &mut self.open[..self.count];
-        let (at, lowest) = open
-            .iter()
-            .copied()
-            .enumerate()
-            .min_by(|(_, a), (_, b)| a.pass_m2.total_cmp(&b.pass_m2))?;
+        let mut at = 0;
+        for (i, shore) in open.iter().enumerate() {
+            if shore.pass_m2 < open[at].pass_m2 {
+                at = i;
+            }
+        }
+        let lowest = *open.get(at)?;
         open[at] = open[self.count - 1];
         self.count -= 1;
         Some(lowest)
     }
 
-    /// Wets a triangle, unless it is; its other edges are shore then.
+    /// Adds the edges of a triangle to the shore.
     fn enter(&mut self, face: Face) {
-        if !self.wet(face) {
-            return;
-        }
         let Face { column: c, row: r, upper } = face;
         let (low, high) = (self.corner(c, r), self.corner(c + 1, r + 1));
         let third = if upper { self.corner(c, r + 1) } else { self.corner(c + 1, r) };
-        let beside = |column: i64, row: i64| Face { column, row, upper: !upper };
+        let beside = |column: i16, row: i16| Face { column, row, upper: !upper };
         let (from_low, from_high) = if upper {
             (beside(c - 1, r), beside(c, r + 1))
         } else {
@@ -130,11 +140,10 @@ impl<'a> Flood<'a> {
     /// Marks a triangle of the window; false if it was or lies outside.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn wet(&mut self, Face { column, row, upper }: Face) -> bool {
-        let (c, r) = (column - self.first[0], row - self.first[1]);
-        if !(0..WINDOW).contains(&c) || !(0..WINDOW).contains(&r) {
+        if !(0..WINDOW).contains(&column) || !(0..WINDOW).contains(&row) {
             return false;
         }
-        let index = (2 * (r * WINDOW + c) + i64::from(upper)) as usize;
+        let index = (2 * (row * WINDOW + column) + i16::from(upper)) as usize;
         let (word, bit) = (&mut self.seen[index / 64], 1 << (index % 64));
         let dry = *word & bit == 0;
         *word |= bit;
@@ -154,7 +163,8 @@ impl<'a> Flood<'a> {
     }
 
     /// A corner from the centre, m.
-    fn corner(&self, column: i64, row: i64) -> [f64; 3] {
+    fn corner(&self, column: i16, row: i16) -> [f64; 3] {
+        let (column, row) = (self.first[0] + i64::from(column), self.first[1] + i64::from(row));
         let [x, y] = self.grid.plan_m(column, row);
         let z = f64::from(self.grid.height_beyond_m(column, row));
         [x - self.centre_m[0], y - self.centre_m[1], z - self.centre_m[2]]

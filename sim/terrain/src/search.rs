@@ -6,7 +6,7 @@
 //! Blocks and cells of the grid that lie too deep for the ball are passed over by their top, and of a
 //! block all cells but those where the ground is as steep as the line to the centre.
 
-use crate::grid::{BLOCK, PER_M, SPACING_M};
+use crate::grid::{BLOCK, PER_M, SPACING_M, floor};
 use crate::{Grid, Nearest};
 
 /// Slack of the conditions, m²: on the border between two features, both may hold, never neither.
@@ -224,6 +224,7 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// How far aside of the centre a minimum on triangles with this rise along an axis can lie, m, if it
 /// lies `below_m` (from and to) below: the line to it leans as some of the triangles that it is on.
+#[inline]
 fn feet_m(rise: [f32; 2], below_m: [f64; 2]) -> [f64; 2] {
     let [low, high] = rise.map(f64::from);
     let [near, far] = below_m;
@@ -234,6 +235,7 @@ fn feet_m(rise: [f32; 2], below_m: [f64; 2]) -> [f64; 2] {
 
 /// The foot of the perpendicular on an edge from `corner` along `along`, if it lies within; `grows`
 /// is their product.
+#[inline]
 fn on_edge(corner: [f64; 3], along: [f64; 3], grows: f64) -> Option<[f64; 3]> {
     let length_m2 = along.iter().map(|m| m * m).sum();
     if !(-grows >= 0.0 && -grows <= length_m2) {
@@ -253,12 +255,14 @@ impl View<'_> {
 
     /// Those of the cells `from` to `to` along an axis that have a part in a stretch from the centre.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
+    #[inline]
     fn cells_within(&self, axis: usize, [from, to]: [usize; 2], m: [f64; 2]) -> Option<[usize; 2]> {
-        let at = |m: f64| ((m - self.first_m[axis]) * PER_M).floor() as i64;
+        let at = |m: f64| floor((m - self.first_m[axis]) * PER_M);
         let (low, high) = (at(m[0]).max(from as i64), at(m[1]).min(to as i64));
         (low <= high).then_some([low as usize, high as usize])
     }
 
+    #[inline]
     fn cell(&self, column: usize, row: usize, z: f64) -> Cell {
         let [x, y] = self.plan_m(column, row);
         let index = row * self.stride + column;

@@ -6,7 +6,7 @@
 //! body alone and joins that body's spatial matrix. Sliding friction follows the normal force but
 //! not the reverse, so the matrices are not symmetric and rows and columns are kept apart.
 
-use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS};
+use super::pose::{ARMS, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS};
 use super::spatial::{
     Spatial, Spatial6, ZERO, ZERO6, add, add_scaled, add6, apply, apply_transposed, dot,
     take_rank_one,
@@ -15,12 +15,15 @@ use super::tree::Tree;
 
 /// The matrix to factor: the bodies' inertias, and what stiffens them within a step.
 #[derive(Debug)]
-pub(super) struct Matrix {
+pub(super) struct Matrix<'a> {
     /// On each hinge's own rate: implicit springs, dampers, brakes, times the step, kg m². The first
     /// six stay zero.
     pub(super) hinge: Generalized,
     /// On the bodies' twists: inertias and contacts.
-    pub(super) bodies: BodyInertias<Spatial6>,
+    pub(super) frame: [Spatial6; 3],
+    pub(super) wheel: [Spatial6; 6],
+    /// Nothing touches an arm.
+    pub(super) arm: &'a [Spatial6; 6],
 }
 
 /// A hinge that was eliminated.
@@ -47,8 +50,8 @@ impl Factors {
 
     /// Factors a matrix, which is used up. `None` if it has no positive pivots, which friction that
     /// jams an arm can do.
-    pub(super) fn factor(&mut self, pose: &Pose, matrix: &mut Matrix) -> Option<()> {
-        let Matrix { hinge, bodies: BodyInertias { frame, arm, wheel } } = matrix;
+    pub(super) fn factor(&mut self, pose: &Pose, matrix: &mut Matrix<'_>) -> Option<()> {
+        let Matrix { hinge, frame, wheel, arm } = matrix;
         let pivot = &mut self.pivot;
         for i in 0..6 {
             let (body, k) = (&mut wheel[i], WHEELS + i);

@@ -42,21 +42,20 @@ pub(super) struct Touches {
 }
 
 impl Touches {
-    /// Where a ball at `centre` is no further from the ground than `reach_m`.
-    pub(super) fn find(terrain: &Terrain, centre: DVec3, reach_m: f64) -> Self {
-        let mut found = Self::default();
+    /// Looks where a ball at `centre` is no further from the ground than `reach_m`.
+    pub(super) fn find(&mut self, terrain: &Terrain, centre: DVec3, reach_m: f64) {
+        self.count = 0;
         let Terrain::Grid(grid) = terrain else {
-            terrain.each_minimum(centre.to_array(), reach_m, |at| found.insert(centre, &at));
-            return found;
+            terrain.each_minimum(centre.to_array(), reach_m, |at| self.insert(centre, &at));
+            return;
         };
         // Those a little beyond may have a share of those within.
         let sharing_m = reach_m.hypot(SETTLED_M);
-        terrain.each_minimum(centre.to_array(), sharing_m, |at| found.insert(centre, &at));
-        if found.count > 1 {
-            found.share(grid, centre);
+        terrain.each_minimum(centre.to_array(), sharing_m, |at| self.insert(centre, &at));
+        if self.count > 1 {
+            self.share(grid, centre);
         }
-        found.drop_beyond(reach_m);
-        found
+        self.drop_beyond(reach_m);
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Touch> {
@@ -177,10 +176,9 @@ mod tests {
 
     /// The force that the touches make on a ball with a stiffness of 1.
     fn force(terrain: &Terrain, centre: DVec3) -> DVec3 {
-        Touches::find(terrain, centre, RADIUS_M)
-            .iter()
-            .map(|t| t.normal * (t.weight * (RADIUS_M - t.distance_m).max(0.0)))
-            .sum()
+        let mut touches = Touches::default();
+        touches.find(terrain, centre, RADIUS_M);
+        touches.iter().map(|t| t.normal * (t.weight * (RADIUS_M - t.distance_m).max(0.0))).sum()
     }
 
     #[test]

@@ -10,7 +10,7 @@
 use super::contact::{Body, Contact};
 use super::factor::{Factors, Matrix};
 use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, Pose, WHEELS, gather};
-use super::spatial::{Spatial, Spatial6, add, add_at_point, dot, velocity_at, wrench_at};
+use super::spatial::{Spatial, Spatial6, ZERO6, add, add_at_point, dot, velocity_at, wrench_at};
 use super::tree::Tree;
 
 /// Residual at which the balance holds, as a velocity of the whole machine, m/s. Convergence is
@@ -49,8 +49,8 @@ pub(super) struct Convergence {
 }
 
 /// What an iteration writes over that of the last.
-struct Work {
-    matrix: Matrix,
+struct Work<'a> {
+    matrix: Matrix<'a>,
     factors: Factors,
 }
 
@@ -61,8 +61,15 @@ impl Balance<'_> {
     /// step should be: on uneven ground they start this one with a creep that reads as sliding.
     pub(super) fn solve(&self, rate: &mut Generalized, contacts: &mut [Contact]) -> Convergence {
         let mut smooth = self.lack;
-        let matrix = Matrix { hinge: self.hinge, bodies: self.inertias.clone() };
-        let mut work = Work { matrix, factors: Factors::new() };
+        let mut work = Work {
+            matrix: Matrix {
+                hinge: self.hinge,
+                frame: [ZERO6; 3],
+                wheel: [ZERO6; 6],
+                arm: &self.inertias.arm,
+            },
+            factors: Factors::new(),
+        };
         self.set_velocities(rate, contacts);
         let mut report = Convergence::default();
         for iteration in 0..ITERATIONS_MAX {
@@ -102,7 +109,7 @@ impl Balance<'_> {
         rate: &Generalized,
         contacts: &mut [Contact],
         coupled: bool,
-        work: &mut Work,
+        work: &mut Work<'_>,
     ) -> Option<Generalized> {
         self.fill(&mut work.matrix, rate, contacts, coupled);
         if work.factors.factor(self.pose, &mut work.matrix).is_some() {
@@ -117,19 +124,24 @@ impl Balance<'_> {
     }
 
     /// Writes the derivative of the residual; the contacts keep their part of it.
-    fn fill(&self, out: &mut Matrix, rate: &Generalized, contacts: &mut [Contact], coupled: bool) {
+    fn fill(
+        &self,
+        out: &mut Matrix<'_>,
+        rate: &Generalized,
+        contacts: &mut [Contact],
+        coupled: bool,
+    ) {
         out.hinge = self.hinge;
-        // The arms are as they were: factoring leaves them.
-        out.bodies.frame = self.inertias.frame;
-        out.bodies.wheel = self.inertias.wheel;
+        out.frame = self.inertias.frame;
+        out.wheel = self.inertias.wheel;
         for i in 0..6 {
             out.hinge[WHEELS + i] += self.brake_slope(i, rate);
         }
         for contact in contacts {
             contact.matrix = contact.slope(contact.velocity, coupled);
             let body = match contact.body {
-                Body::Wheel(i) => &mut out.bodies.wheel[i],
-                Body::Frame(i) => &mut out.bodies.frame[i],
+                Body::Wheel(i) => &mut out.wheel[i],
+                Body::Frame(i) => &mut out.frame[i],
             };
             add_at_point(body, &contact.matrix, contact.at);
         }

@@ -24,6 +24,8 @@ const HULL_REACH_M: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub(super) struct Search {
     terrain: Terrain,
+    /// Those of the last ball; here so that they need not be made anew.
+    touches: Touches,
     /// Path that each frame's hull may yet travel before any of it can touch, m. Only saves time:
     /// nothing that is found depends on it.
     clear_m: [f64; 3],
@@ -40,8 +42,8 @@ struct Ball {
 }
 
 impl Search {
-    pub(super) const fn new(terrain: Terrain) -> Self {
-        Self { terrain, clear_m: [0.0; 3], stuck: [false; 6] }
+    pub(super) fn new(terrain: Terrain) -> Self {
+        Self { terrain, touches: Touches::default(), clear_m: [0.0; 3], stuck: [false; 6] }
     }
 
     /// Forgets how far the hull was from the ground: the machine has been put elsewhere.
@@ -64,7 +66,7 @@ impl Search {
             let speed_m_s = velocity_at(&arm, centre).length();
             let ball = Ball { body: Body::Wheel(i), centre, radius_m: tree.radius_m, speed_m_s };
             let patch = tree.patch(i, pose, state, dt_s);
-            self.touches(&ball, state.position, &tree.laws[i], Some(&patch), dt_s, found);
+            self.add(&ball, state.position, &tree.laws[i], Some(&patch), dt_s, found);
         }
         for (i, hull) in tree.hulls.iter().enumerate() {
             let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
@@ -79,7 +81,7 @@ impl Search {
 
     /// Contacts of one frame's hull; returns how far the rest of it is from the ground, m.
     fn hull(
-        &self,
+        &mut self,
         (frame, hull): (usize, &[HullBall]),
         twist: &Spatial,
         (pose, state): (&Pose, &State),
@@ -99,14 +101,15 @@ impl Search {
             if gap_m <= ahead_m(&HULL, speed_m_s, dt_s) {
                 let ball =
                     Ball { body: Body::Frame(frame), centre, radius_m: part.radius_m, speed_m_s };
-                self.touches(&ball, state.position, &HULL, None, dt_s, found);
+                self.add(&ball, state.position, &HULL, None, dt_s, found);
             }
         }
         clear_m
     }
 
-    fn touches(
-        &self,
+    /// Adds the contacts of one ball.
+    fn add(
+        &mut self,
         ball: &Ball,
         origin: DVec3,
         law: &ContactLaw,
@@ -115,7 +118,8 @@ impl Search {
         found: &mut Vec<Contact>,
     ) {
         let reach_m = ball.radius_m + ahead_m(law, ball.speed_m_s, dt_s);
-        for touch in Touches::find(&self.terrain, origin + ball.centre, reach_m).iter() {
+        self.touches.find(&self.terrain, origin + ball.centre, reach_m);
+        for touch in self.touches.iter() {
             let depth_m = ball.radius_m - touch.distance_m;
             // Half way between the undeformed surfaces, as other engines have it: a tyre rolls on a
             // radius between the free and the loaded one.

@@ -47,7 +47,7 @@ mod wheel_order;
 pub use candidates::Candidate;
 pub use details::Details;
 pub use diagnose::Progress;
-pub use evidence::{Belief, Evidence, Left};
+pub use evidence::{Base, Belief, Evidence, Left};
 pub use excitation::not_testable;
 pub use generator::{Floor, Generator, Residual, Signal};
 pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};

@@ -93,7 +93,7 @@ fn fitted_after(
     let signals = Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap();
     let runs = [signals];
     let evidence = Evidence::new(&runs, &machine, Effects::default(), &Knob::all());
-    let fits = search(&evidence, &CATALOGUE.iter().collect::<Vec<_>>(), 0.0);
+    let fits = search(&evidence, &CATALOGUE.iter().collect::<Vec<_>>());
     let best = fits.first().expect("something explains it");
     let Hypothesis { effect: found, scope: place } = best.hypothesis;
     assert_eq!((found.name, place), (effect, scope));

@@ -92,7 +92,7 @@ fn ranked(run: &str, overlay: &str, rivals: &[&str]) -> Option<Vec<Fit>> {
     let runs = [Signals::of_series("ours", &series, log.duration_s(), terrain).unwrap()];
     let evidence = Evidence::new(&runs, &machine, Effects::default(), &Knob::all());
     let rivals: Vec<&Effect> = rivals.iter().map(|name| find(name).unwrap()).collect();
-    Some(search(&evidence, &rivals, 0.0))
+    Some(search(&evidence, &rivals))
 }
 
 fn assert_first(fits: &[Fit], effect: &str, scope: Scope, near: f64, within: f64) {

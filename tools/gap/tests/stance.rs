@@ -39,7 +39,7 @@ fn fits(overlay: &str, runs: &[&str]) -> Option<Vec<Fit>> {
         Scope::ALL.iter().any(|scope| Generator::Stance.hears(effect, *scope))
     };
     let candidates: Vec<&'static Effect> = CATALOGUE.iter().filter(heard).collect();
-    Some(search(&evidence, &candidates, 0.0))
+    Some(search(&evidence, &candidates))
 }
 
 const STANDING: [&str; 2] = ["run-1-arm_step.log.gz", "run-2-multisine.log.gz"];

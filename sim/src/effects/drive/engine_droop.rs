@@ -42,7 +42,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         Parameter {
             name: "power_factor",
             neutral: 1.0,
-            tolerance: 0.1,
+            tolerance: 0.05,
             range: [0.005, 2.0],
             slot: Slot::Whole(|effects| &mut effects.drive.engine_droop.power_factor),
         },

@@ -1,9 +1,9 @@
 //! The whole diagnosis of one inquiry, step after step.
 
-use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
 use super::candidates::{Candidate, Docket};
+use super::evidence::Base;
 use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
@@ -60,7 +60,7 @@ impl Inquiry {
         let (fit, held) = (of(true), of(false));
         let docket = |base: &_| Docket::new(&fit, &held, &self.machine, base);
         tell("driving every block with what was measured", 0.0);
-        let first = docket(&self.believed);
+        let first = docket(&self.believed.clone().into());
         let before = first.left(&[]);
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
@@ -83,11 +83,13 @@ impl Inquiry {
     /// the likely ones, for it was found while the second still disturbed.
     fn second<'a>(
         &self,
-        docket: &dyn Fn(&Effects) -> Docket<'a>,
+        docket: &dyn Fn(&Base) -> Docket<'a>,
         single: &[Candidate],
     ) -> (Vec<[Candidate; 2]>, Docket<'a>) {
-        let beside =
-            |one: &Candidate| docket(&one.fit.hypothesis.applied(&self.believed, &one.fit.values));
+        let beside = |one: &Candidate| {
+            let effects = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
+            docket(&Base { effects, since_s: one.fit.from_s })
+        };
         let others = |one: &Candidate, among: &[&'static Effect]| -> Vec<&'static Effect> {
             among.iter().copied().filter(|effect| *effect != one.fit.hypothesis.effect).collect()
         };

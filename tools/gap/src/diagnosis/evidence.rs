@@ -1,11 +1,12 @@
 //! Residuals of all runs as one problem: linear in every tolerance, each signal with a scale of its own.
 //!
-//! A sound machine's residuals lie about one floor; a block that the simulator does not quite know lies
-//! higher. So the scale of each signal is unknown too: its square is drawn about one, worth
-//! [`SCALE_SAMPLES`] samples of belief, and integrated out. What it costs to believe something is then,
-//! with RSS the squares that a signal leaves and N its independent samples,
-//! `sum (N + nu) ln(1 + RSS / nu)`: a block that nothing explains raises its own scale and does not
-//! drown the others.
+//! A sound machine's residuals lie below the floor; a block that the simulator does not quite know lies
+//! higher. So the scale of each signal is unknown too, but never less than one: what is below the floor
+//! is how two models differ, and to explain a part of it explains nothing. A larger scale is worth
+//! [`SCALE_SAMPLES`] samples of belief against. With RSS the squares that a signal leaves, N its
+//! independent samples and nu that belief, believing something costs RSS up to N, and
+//! `N + (N + nu) ln((RSS + nu) / (N + nu))` beyond: a block that nothing explains raises its own scale
+//! and does not drown the others.
 
 use std::borrow::Cow;
 
@@ -31,13 +32,28 @@ pub struct Evidence<'a> {
     runs: &'a [Signals],
     machine: Machine,
     /// What is believed beside the tolerances: effects found so far.
-    pub base: Effects,
+    base: Base,
     watches: Vec<Watch>,
     /// Cost of the base.
     base_cost: f64,
     /// Of the knobs' posterior precision.
     factor: Cholesky<f64, Dyn>,
     knobs: Vec<Knob>,
+}
+
+/// What is believed already, and from when on in every run; what was before is not looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Base {
+    /// The effects.
+    pub effects: Effects,
+    /// Since when, s.
+    pub since_s: f64,
+}
+
+impl From<Effects> for Base {
+    fn from(effects: Effects) -> Self {
+        Self { effects, since_s: 0.0 }
+    }
 }
 
 /// What one signal leaves.
@@ -74,7 +90,12 @@ impl<'a> Evidence<'a> {
     /// # Panics
     /// Where a residual is not a number under the nominal machine.
     #[must_use]
-    pub fn new(runs: &'a [Signals], machine: &Machine, base: Effects, knobs: &[Knob]) -> Self {
+    pub fn new(
+        runs: &'a [Signals],
+        machine: &Machine,
+        base: impl Into<Base>,
+        knobs: &[Knob],
+    ) -> Self {
         Self::watching(Generator::all(), runs, machine, base, knobs)
     }
 
@@ -87,9 +108,10 @@ impl<'a> Evidence<'a> {
         generators: Vec<Generator>,
         runs: &'a [Signals],
         machine: &Machine,
-        base: Effects,
+        base: impl Into<Base>,
         knobs: &[Knob],
     ) -> Self {
+        let base = base.into();
         let watches: Vec<Watch> = generators
             .into_par_iter()
             .map(|generator| Watch::new(generator, runs, machine, &base, knobs))
@@ -107,7 +129,7 @@ impl<'a> Evidence<'a> {
         for _ in 0..ROUNDS {
             evidence.settle();
         }
-        evidence.base_cost = evidence.cost(&evidence.base, &|_| false);
+        evidence.base_cost = evidence.cost(&evidence.base.effects, &|_| false);
         evidence
     }
 
@@ -119,28 +141,30 @@ impl<'a> Evidence<'a> {
         self.cost_of(&self.sums(belief.into(), only))
     }
 
-    /// The same; what generators of one wheel say of `values` there is remembered.
-    pub(super) fn cost_remembered(
+    /// What it costs to believe `effects` from each of `instants` of every run on, s; what generators of
+    /// one wheel say of `values` there is remembered.
+    pub(super) fn costs_remembered(
         &self,
-        belief: Belief<'_>,
+        effects: &Effects,
         only: &dyn Fn(Generator) -> bool,
-        values: &[f64],
-        memory: &mut Memory,
-    ) -> f64 {
+        instants: &[f64],
+        (values, memory): (&[f64], &mut Memory),
+    ) -> Vec<f64> {
         let mut sums = |watch: &Watch| {
             let generator = watch.stack.generator;
             if !only(generator) {
-                return Cow::Owned(watch.sums.clone());
+                return vec![watch.sums.clone(); instants.len()];
             }
-            let again = || watch.again(self.runs, &self.machine, belief);
+            let again = || watch.onsets(self.runs, &self.machine, effects, instants);
             if generator.wheel().is_none() {
-                return Cow::Owned(again());
+                return again();
             }
             let bits = values.iter().map(|value| value.to_bits()).collect();
-            Cow::Owned(memory.entry((generator, bits)).or_insert_with(again).clone())
+            memory.entry((generator, bits)).or_insert_with(again).clone()
         };
-        let sums: Vec<_> = self.watches.iter().map(&mut sums).collect();
-        self.cost_of(&sums)
+        let sums: Vec<Vec<Sums>> = self.watches.iter().map(&mut sums).collect();
+        let at = |k: usize| sums.iter().map(|all| Cow::Borrowed(&all[k])).collect::<Vec<_>>();
+        (0..instants.len()).map(|k| self.cost_of(&at(k))).collect()
     }
 
     /// What it costs to believe `effects` from each of `instants` of every run on, s.
@@ -172,7 +196,7 @@ impl<'a> Evidence<'a> {
         let mut cost = step.norm_squared();
         for (watch, squares) in self.watches.iter().zip(&left) {
             for (group, square) in watch.stack.groups.iter().zip(squares) {
-                cost += (SCALE_SAMPLES + group.samples) * (square / SCALE_SAMPLES).ln_1p();
+                cost += cost_of_squares(*square, group.samples);
             }
         }
         cost
@@ -200,7 +224,7 @@ impl<'a> Evidence<'a> {
     /// What each generator leaves under the base: mean square of its signals in units of their floors.
     #[must_use]
     pub fn gaps(&self) -> Vec<(Generator, f64)> {
-        let left = self.left(&self.base);
+        let left = self.left(&self.base.effects);
         let gap = |watch: &Watch| {
             let own = left.iter().filter(|left| left.generator == watch.stack.generator);
             let (squares, samples) = own.fold((0.0, 0.0), |(squares, samples), left| {
@@ -214,8 +238,14 @@ impl<'a> Evidence<'a> {
     /// Where all knobs at once come to lie, each by how many of its tolerances from the base.
     #[must_use]
     pub fn shifts(&self) -> Vec<(Knob, f64)> {
-        let step = self.step(&self.sums((&self.base).into(), &|_| false));
+        let step = self.step(&self.sums((&self.base.effects).into(), &|_| false));
         self.knobs.iter().copied().zip(step.iter().copied()).collect()
+    }
+
+    /// Effects that are believed already.
+    #[must_use]
+    pub const fn base(&self) -> &Effects {
+        &self.base.effects
     }
 
     /// Cost of the base.
@@ -230,7 +260,7 @@ impl<'a> Evidence<'a> {
         let left = self.remaining(&sums, &self.step(&sums));
         for (watch, squares) in self.watches.iter_mut().zip(&left) {
             let weigh = |(group, square): (&Group, &f64)| {
-                (SCALE_SAMPLES + group.samples) / (SCALE_SAMPLES + square)
+                ((SCALE_SAMPLES + group.samples) / (SCALE_SAMPLES + square)).min(1.0)
             };
             watch.weights = watch.stack.groups.iter().zip(squares).map(weigh).collect();
         }
@@ -278,6 +308,13 @@ impl<'a> Evidence<'a> {
         };
         self.watches.iter().zip(sums.iter().map(Cow::as_ref)).map(of).collect()
     }
+}
+
+/// What it costs that a signal of `samples` independent samples leaves `square`, its scale at its best.
+fn cost_of_squares(square: f64, samples: f64) -> f64 {
+    let above = SCALE_SAMPLES + square.max(samples);
+    let believed = SCALE_SAMPLES + samples;
+    square.min(samples) + believed * (above / believed).ln()
 }
 
 /// Precision of the knobs, in units of their tolerances: one's belief and every watch's word.

@@ -13,8 +13,8 @@ use super::{arms, bus, controllers, driving, joints, position_control, stance, t
 const STRIDE: usize = 10;
 
 /// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors.
-const STANDING: [&str; 4] =
-    ["imu-offset", "seal-stiction", "standstill-drag", "rolling-resistance"];
+const STANDING: [&str; 3] =
+    ["imu-offset", "seal-stiction", "standstill-drag"];
 
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -91,13 +91,13 @@ impl Signal {
         let (sigma, correlation_s) = match self {
             Self::Stroke => (0.2e-3, 0.8),
             Self::ArmOpening => (1.0e-3, 0.5),
-            Self::JointAngle => (0.005, 2.0),
-            Self::JointFast => (1.8e-3, 0.3),
+            Self::JointAngle => (0.006, 2.0),
+            Self::JointFast => (2.2e-3, 0.3),
             Self::SteerOpening => (0.0025, 0.3),
             Self::DrivePressure => (3.5e5, 0.3),
             Self::DriveDifference => (0.7e5, 0.3),
-            Self::DriveForce => (150.0, 2.5),
-            Self::Roll => (0.0005, 5.0),
+            Self::DriveForce => (100.0, 2.5),
+            Self::Roll => (0.0007, 5.0),
             Self::Pitch => (0.0006, 5.0),
             Self::Weight => (450.0, 5.0),
             Self::WeightX => (0.005, 5.0),
@@ -148,8 +148,7 @@ impl Generator {
                 name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
             }
             Self::Joint(_) => {
-                let steers = effect.block == Block::Steering;
-                (steers && !Self::SteerEcu(1).hears(effect, scope)) || name == "slippery-ground"
+                effect.block == Block::Steering && !Self::SteerEcu(1).hears(effect, scope)
             }
             Self::Drive => {
                 (effect.block == Block::Drive && name != "slippery-ground")

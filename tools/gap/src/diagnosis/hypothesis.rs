@@ -7,6 +7,9 @@ use super::descent::descend;
 use super::evidence::{Belief, Evidence};
 use super::generator::Generator;
 
+/// Beginnings that an effect may have, as many as can be told apart in a run.
+const BEGINNINGS: f64 = 12.0;
+
 /// An effect at a scope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hypothesis {
@@ -84,7 +87,7 @@ impl Hypothesis {
     /// How much better `evidence` is explained with `values`: half the cost that goes.
     #[must_use]
     pub fn gain(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
-        let effects = self.applied(&evidence.base, values);
+        let effects = self.applied(evidence.base(), values);
         let only = |generator: Generator| generator.hears(self.effect, self.scope);
         let belief = Belief { effects: &effects, from_s };
         0.5 * (evidence.base_cost() - evidence.cost(belief, &only))
@@ -97,7 +100,7 @@ impl Hypothesis {
         instants: &[f64],
         values: &[f64],
     ) -> Vec<f64> {
-        let effects = self.applied(&evidence.base, values);
+        let effects = self.applied(evidence.base(), values);
         let only = |generator: Generator| generator.hears(self.effect, self.scope);
         let costs = evidence.onset_costs(&effects, &only, instants);
         costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
@@ -106,7 +109,7 @@ impl Hypothesis {
     /// What is left and what one has to believe for it.
     fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
         let only = |generator: Generator| generator.hears(self.effect, self.scope);
-        let effects = self.applied(&evidence.base, values);
+        let effects = self.applied(evidence.base(), values);
         let of = |(p, v): (&Parameter, &f64)| ((v - p.neutral) / wide(p)).powi(2);
         let prior: f64 = self.effect.parameters.iter().zip(values).map(of).sum();
         evidence.cost(Belief { effects: &effects, from_s }, &only) + prior
@@ -119,7 +122,9 @@ impl Hypothesis {
             parameters.map(|(k, p)| sigma(&of, &values, cost, k, p).min(wide(p))).collect();
         let occam: f64 =
             self.effect.parameters.iter().zip(&sigma).map(|(p, s)| (wide(p) / s).ln()).sum();
-        let log_evidence = 0.5 * (evidence.base_cost() - cost) - occam + self.log_prior();
+        let beginning = if from_s > 0.0 { BEGINNINGS.ln() } else { 0.0 };
+        let log_evidence =
+            0.5 * (evidence.base_cost() - cost) - occam - beginning + self.log_prior();
         Fit { hypothesis: *self, values, sigma, from_s, log_evidence }
     }
 }

@@ -185,7 +185,7 @@ mod tests {
         let sigma = vec![0.0; values.len()];
         let hypothesis = Hypothesis { effect, scope: Scope::All };
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Candidate { fit, held_gain: 0.0 }
+        Candidate { fit, held_gain: None }
     }
 
     fn left(square: f64) -> Vec<Left> {

@@ -2,7 +2,12 @@
 
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
-use xt28_sim::effects::{CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Scope, Slot};
+use xt28_sim::effects::{Block, CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Scope, Slot};
+
+/// Share of an effect's tolerance by which a sound machine is off, all effects at once. A tolerance is
+/// what one believes of one effect before seeing data; two hundred of them at their full width bend to
+/// a third of a valve's gain (measured on foreign plants, docs/diagnosis.md).
+const SOUND: f64 = 0.4;
 
 /// One number that may be other than one believes.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +44,8 @@ pub static TOLERANCES: &[Tolerance] = &[
         sigma: 0.05,
         apply: |m, f| m.vehicle.joint_damping_nms *= f,
     },
+    // How tyres scrub as joints turn: plants differ in it by as much (docs/diagnosis.md).
+    Tolerance { name: "scrub", sigma: 0.3, apply: |m, f| m.wheels.friction *= f },
     Tolerance { name: "drive gain", sigma: 0.05, apply: |m, f| m.vehicle.circuit_gain_nms *= f },
     Tolerance {
         name: "drive integral",
@@ -93,7 +100,11 @@ impl Knob {
     #[must_use]
     pub const fn tolerance(&self) -> f64 {
         match self {
-            Self::Effect(_, parameter, _) => parameter.tolerance,
+            Self::Effect(effect, parameter, _) => match effect.block {
+                // Ground is as it is, however well the machine is kept.
+                Block::Ground => parameter.tolerance,
+                _ => SOUND * parameter.tolerance,
+            },
             Self::Machine(tolerance) => tolerance.sigma,
         }
     }

@@ -5,13 +5,22 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use xt28_sim::effects::{Effect, Parameter};
 
-use super::evidence::{Belief, Evidence};
+use super::evidence::Evidence;
 use super::generator::Generator;
 use super::hypothesis::{Fit, Hypothesis};
 use super::watch::Sums;
 
 /// Grid of the first look, in tolerances from neutral.
 const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
+/// The same for what has its neutral value at an end of its range, a delay for one: what comes late by
+/// much gains nothing until it is late by nearly all of it, so the grid is close.
+const FURTHER: [f64; 12] = [1.5, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 18.0, 21.0, 25.0, 30.0];
+/// Grid of a parameter beside a fraction of another, in tolerances.
+const BESIDE: [f64; 3] = [10.0, 20.0, 40.0];
+/// Instants of every run from which an effect is looked for, s; what sets in between is seen at one.
+const LOOKED_FROM_S: [f64; 4] = [0.0, 6.0, 12.0, 18.0];
+/// What an effect that sets in late must gain beyond one that was always there, nats.
+const LATE_MIN: f64 = 6.0;
 /// How many hypotheses are followed to their best values.
 const FOLLOWED: usize = 24;
 /// How many starts of one hypothesis, if they are the leading ones.
@@ -21,25 +30,25 @@ const LEADING: usize = 6;
 /// A start must gain this much, nats.
 const GAIN_MIN: f64 = 0.5;
 
-/// Sums of generators that look at one wheel alone, by wheel and values.
-pub(super) type Memory = BTreeMap<(Generator, Vec<u64>), Sums>;
+/// Sums of generators that look at one wheel alone, one for each instant, by wheel and values.
+pub(super) type Memory = BTreeMap<(Generator, Vec<u64>), Vec<Sums>>;
 
 /// A hypothesis with the best values of the first look.
 #[derive(Clone, Debug)]
 struct Start {
     hypothesis: Hypothesis,
     values: Vec<f64>,
+    from_s: f64,
     gain: f64,
 }
 
-/// Fits of the hypotheses that may explain something, the likeliest first.
-///
-/// `from_s` is the instant of every run at which the effect sets in.
+/// Fits of the hypotheses that may explain something, there always or from late in every run on, the
+/// likeliest first.
 #[must_use]
-pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect], from_s: f64) -> Vec<Fit> {
+pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> {
     let mut starts: Vec<Start> = effects
         .par_iter()
-        .flat_map_iter(|effect| first_look(evidence, effect, from_s))
+        .flat_map_iter(|effect| first_look(evidence, effect))
         .filter(|start| start.gain > GAIN_MIN)
         .collect();
     starts.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
@@ -59,7 +68,7 @@ pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect], from_s: f64)
     }
     let mut fits: Vec<Fit> = followed
         .into_par_iter()
-        .map(|start| start.hypothesis.refit(evidence, from_s, &start.values))
+        .map(|start| start.hypothesis.refit(evidence, start.from_s, &start.values))
         .collect();
     fits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     let mut best: Vec<Fit> = Vec::new();
@@ -77,17 +86,23 @@ fn weight(start: &Start) -> f64 {
 
 /// All scopes of one effect on the grid. What a single arm does with some values is the same at every
 /// scope that has the arm, and is remembered.
-fn first_look(evidence: &Evidence<'_>, effect: &'static Effect, from_s: f64) -> Vec<Start> {
+fn first_look(evidence: &Evidence<'_>, effect: &'static Effect) -> Vec<Start> {
     let mut memory = Memory::new();
     let mut starts = Vec::new();
     for hypothesis in Hypothesis::of(&[effect]) {
         for values in grid(effect.parameters) {
-            let effects = hypothesis.applied(&evidence.base, &values);
-            let belief = Belief { effects: &effects, from_s };
+            let effects = hypothesis.applied(evidence.base(), &values);
             let only = |generator: Generator| generator.hears(effect, hypothesis.scope);
-            let cost = evidence.cost_remembered(belief, &only, &values, &mut memory);
-            let gain = 0.5 * (evidence.base_cost() - cost);
-            starts.push(Start { hypothesis, values, gain });
+            let remembered = (&values[..], &mut memory);
+            let costs = evidence.costs_remembered(&effects, &only, &LOOKED_FROM_S, remembered);
+            let worth = |(from_s, cost): (f64, f64)| {
+                let late = if from_s > 0.0 { LATE_MIN } else { 0.0 };
+                (from_s, 0.5 * (evidence.base_cost() - cost) - late)
+            };
+            let each = LOOKED_FROM_S.into_iter().zip(costs).map(worth);
+            if let Some((from_s, gain)) = each.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                starts.push(Start { hypothesis, values, from_s, gain });
+            }
         }
     }
     starts
@@ -106,15 +121,22 @@ fn falling(p: &Parameter) -> impl Iterator<Item = f64> {
 fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     let mut grid: Vec<Vec<f64>> = Vec::new();
     for (k, p) in parameters.iter().enumerate() {
-        let near = REACHES.map(|reach| p.neutral + reach * p.tolerance);
-        for value in near.into_iter().chain(falling(p)) {
+        let sign = if p.neutral == p.range[0] { 1.0 } else { -1.0 };
+        let one_sided = p.range.contains(&p.neutral);
+        let far = FURTHER.map(|reach| sign * reach);
+        let reaches = if one_sided { &far[..] } else { &REACHES[..] };
+        let near = reaches.iter().map(|reach| p.neutral + reach * p.tolerance);
+        for value in near.chain(falling(p)) {
             let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
             values[k] = value.clamp(p.range[0], p.range[1]);
             if values[k] != p.neutral && !grid.contains(&values) {
                 grid.push(values);
             }
         }
-        grid.extend(fractions(parameters, k));
+        for values in fractions(parameters, k) {
+            grid.extend(beside(parameters, k, &values));
+            grid.push(values);
+        }
     }
     grid
 }
@@ -128,7 +150,21 @@ fn fractions(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
         values
     };
     let far = least > 0.0 && neutral - least > 10.0 * tolerance;
-    if far { [0.3, 0.5, 0.7, 0.85].map(fraction).to_vec() } else { Vec::new() }
+    if far { [0.3, 0.45, 0.55, 0.65, 0.75, 0.85].map(fraction).to_vec() } else { Vec::new() }
+}
+
+/// The same beside what another parameter does that is neutral at an end of its range: an engine that
+/// has lost power and droops under the rest does neither alone.
+fn beside(parameters: &[Parameter], k: usize, values: &[f64]) -> Vec<Vec<f64>> {
+    let others = parameters.iter().enumerate().filter(|(j, p)| *j != k && p.neutral == p.range[0]);
+    let with = |(j, p): (usize, &Parameter)| {
+        BESIDE.map(|reach| {
+            let mut values = values.to_vec();
+            values[j] = (p.neutral + reach * p.tolerance).min(p.range[1]);
+            values
+        })
+    };
+    others.flat_map(with).collect()
 }
 
 #[cfg(test)]

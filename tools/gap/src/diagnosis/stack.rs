@@ -35,13 +35,14 @@ pub(super) struct Stack {
 }
 
 impl Stack {
-    /// Residuals of `generator` on `runs`.
+    /// Residuals of `generator` on `runs`, each from `since_s` on.
     #[allow(clippy::cast_precision_loss)]
     pub(super) fn new(
         generator: Generator,
         runs: &[Signals],
         machine: &Machine,
         effects: &Effects,
+        since_s: f64,
     ) -> Self {
         let mut stack = Self {
             generator,
@@ -56,11 +57,13 @@ impl Stack {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
-                    stack.mask.push(value.is_finite());
-                    if value.is_finite() {
+                    let at_s = i as f64 * STEP_S;
+                    let counts = value.is_finite() && at_s >= since_s;
+                    stack.mask.push(counts);
+                    if counts {
                         stack.values.push(value * weight.sqrt());
                         stack.group.push(group);
-                        stack.at_s.push(i as f64 * STEP_S);
+                        stack.at_s.push(at_s);
                         stack.groups[group].samples += weight;
                     }
                 }
@@ -69,7 +72,8 @@ impl Stack {
         stack
     }
 
-    /// The same samples under another belief; what can no longer be said counts as no error.
+    /// The same samples under another belief; what can no longer be said stays as it was, so that
+    /// nobody gains by it.
     pub(super) fn again(&self, runs: &[Signals], machine: &Machine, effects: &Effects) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
@@ -78,7 +82,8 @@ impl Stack {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {
-                        values.push(if value.is_finite() { value * root } else { 0.0 });
+                        let was = self.values[values.len()];
+                        values.push(if value.is_finite() { value * root } else { was });
                     }
                 }
             }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::evidence::Belief;
+use super::evidence::{Base, Belief};
 use super::generator::Generator;
 use super::knob::Knob;
 use super::signals::Signals;
@@ -43,10 +43,10 @@ impl Watch {
         generator: Generator,
         runs: &[Signals],
         machine: &Machine,
-        base: &Effects,
+        Base { effects: base, since_s }: &Base,
         knobs: &[Knob],
     ) -> Self {
-        let stack = Stack::new(generator, runs, machine, base);
+        let stack = Stack::new(generator, runs, machine, base, *since_s);
         let slope = |knob: &Knob| {
             if let Knob::Effect(effect, _, scope) = knob
                 && !generator.hears(effect, *scope)

@@ -1,10 +1,12 @@
-//! `xt28 gap diagnose` on a log of this bench's own machine: every file it writes reads back.
+//! `xt28 gap diagnose` on a log of this bench's own machine: every file it writes reads back, and
+//! every test drive that it may propose is a scenario that runs and holds.
 
 mod short_drive;
 
 use std::fs;
 
 use short_drive::{DBC, log, path, xt28};
+use xt28_gap::diagnosis::Manoeuvre;
 
 #[test]
 fn an_answer_comes_as_text_json_report_and_overlay() {
@@ -45,4 +47,24 @@ fn an_answer_comes_as_text_json_report_and_overlay() {
     // Another command takes the causes found.
     let output = xt28(&["run", "straight-25m", "--effects", &overlay, "--solver", "reduced"]);
     assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn every_manoeuvre_runs_as_a_scenario_and_leaves_the_machine_on_its_wheels() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = Manoeuvre::all().into_iter().map(|manoeuvre| {
+        let scenario = path(folder.path(), &format!("{}.toml", manoeuvre.name));
+        let script = format!("{}.script.toml", manoeuvre.name);
+        std::fs::write(path(folder.path(), &script), manoeuvre.script()).unwrap();
+        std::fs::write(&scenario, manoeuvre.scenario(&script, "a, b")).unwrap();
+        std::thread::spawn(move || {
+            (manoeuvre.name, xt28(&["run", &scenario, "--solver", "reduced"]))
+        })
+    });
+    for run in runs.collect::<Vec<_>>() {
+        let (name, output) = run.join().unwrap();
+        let talk = String::from_utf8_lossy(&output.stderr);
+        let table = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(0), "{name}: {talk}{table}");
+    }
 }

@@ -5,6 +5,7 @@
 //! that comes from a log is escaped.
 
 mod assumptions;
+mod brief;
 mod chart;
 mod colour;
 mod engineer;
@@ -12,7 +13,6 @@ mod heat;
 mod horizon;
 mod html;
 mod machine_view;
-mod manager;
 mod svg;
 mod table;
 mod text;

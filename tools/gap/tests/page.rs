@@ -139,9 +139,11 @@ fn a_page_says_the_verdict_and_both_causes() {
                  (probability 71 %).";
     assert!(page.contains(words));
     assert_eq!(headline(&diagnosis(Verdict::Effect)), words);
-    for part in ["noise floors", "horizon, s", "time, s", "stroke, mm", "with the causes put in"] {
+    for part in ["noise floors", "horizon, s", "time, s", "with the causes put in"] {
         assert!(page.contains(part), "{part}");
     }
+    let traces = Details::new(&inquiry(), &diagnosis(Verdict::Effect)).traces;
+    assert!(traces.iter().any(|trace| page.contains(trace.unit)), "units are on the axes");
 }
 
 #[test]

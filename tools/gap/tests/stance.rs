@@ -13,7 +13,8 @@ use xt28_sim::{Effects, Solver};
 /// none where the logs are not there.
 #[allow(clippy::disallowed_macros)] // A test that skips says so.
 fn fits(overlay: &str, runs: &[&str]) -> Option<Vec<Fit>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/field-data/aux/nominal");
+    let folder =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/field-data/aux/nominal");
     if !folder.exists() {
         eprintln!("SKIPPED: {} is not there", folder.display());
         return None;
@@ -33,8 +34,7 @@ fn fits(overlay: &str, runs: &[&str]) -> Option<Vec<Fit>> {
     };
     let runs: Vec<Signals> = runs.iter().map(answer).collect();
     let stance = vec![Generator::Stance];
-    let evidence =
-        Evidence::watching(stance, &runs, &machine, Effects::default(), &Knob::all());
+    let evidence = Evidence::watching(stance, &runs, &machine, Effects::default(), &Knob::all());
     let heard = |effect: &&'static Effect| {
         Scope::ALL.iter().any(|scope| Generator::Stance.hears(effect, *scope))
     };

@@ -1,16 +1,20 @@
 //! What reaches the ECUs, and when: frames that are missing, frames that are late.
 //!
 //! Commands come every ten milliseconds by one clock. Loss leaves holes in that row and every frame
-//! that comes in its place; lateness moves frames off their places and loses none. The expectation is
-//! that of the effects' own law, on a long row of frames.
+//! that comes in its place; lateness moves frames off their places and loses none. What is expected, and how
+//! far chance leads from it within a second, is that of the effects' own law, on a long row of frames.
+
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
 
 use std::f64::consts::TAU;
 
 use xt28_sim::Effects;
 
+use super::generator::Signal;
 use super::signals::{DT_S, Samples, Signals};
 
-/// What is expected of the row of commands less what was seen, mean of arms' and drive's.
+/// What is expected of the row of commands less what was seen, mean of arms' and drive's; smaller by as
+/// much as chance is larger than the floor.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BusErrors {
     /// Share of frames that are missing.
@@ -26,33 +30,55 @@ pub(super) struct BusErrors {
 const WINDOW_S: f64 = 1.0;
 /// Period of the two commands, s (the wire contract).
 const PERIOD_S: f64 = 0.01;
-/// Frames of the row on which an expectation stands.
-const ROW: u32 = 1024;
+/// Windows of the row on which an expectation stands.
+const ROW: u32 = 40;
 
 /// Errors over a run.
 #[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
 pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
-    let expected = Row::of(&expected_times_s(effects), f64::from(ROW) * PERIOD_S);
+    let expected = Expected::of(effects);
     let samples = (WINDOW_S / DT_S) as usize;
     let mut errors = BusErrors::default();
-    let windows = signals.len / samples;
-    for window in 0..windows {
-        let from_s = window as f64 * WINDOW_S;
-        let seen = signals.command_times_s.each_ref().map(|times| {
-            let (a, b) = (
-                times.partition_point(|at| *at < from_s),
-                times.partition_point(|at| *at < from_s + WINDOW_S),
-            );
-            Row::of(&times[a..b], WINDOW_S)
-        });
-        let less = |of: fn(&Row) -> f64| of(&expected) - (of(&seen[0]) + of(&seen[1])) / 2.0;
+    for window in 0..signals.len / samples {
+        let seen =
+            signals.command_times_s.each_ref().map(|times| Row::of_window(times, window as f64));
+        let less = |of: fn(&Row) -> f64, signal: Signal| {
+            let chance = of(&expected.chance) / signal.floor().sigma;
+            (of(&expected.mean) - (of(&seen[0]) + of(&seen[1])) / 2.0) / chance.hypot(1.0)
+        };
         let fill = |to: &mut Samples, value: f64| to.extend(std::iter::repeat_n(value, samples));
-        fill(&mut errors.missing, less(|row| row.missing));
-        fill(&mut errors.out_of_place, less(|row| row.out_of_place));
-        fill(&mut errors.uneven, less(|row| row.uneven));
+        fill(&mut errors.missing, less(|row| row.missing, Signal::BusMissing));
+        fill(&mut errors.out_of_place, less(|row| row.out_of_place, Signal::BusPlace));
+        fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven));
     }
     errors
+}
+
+/// What a row of one window looks like under an effect.
+struct Expected {
+    mean: Row,
+    /// Standard deviation from window to window.
+    chance: Row,
+}
+
+impl Expected {
+    fn of(effects: &Effects) -> Self {
+        let times_s = expected_times_s(effects);
+        let rows: Vec<Row> = (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k))).collect();
+        let mean_of =
+            |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+        let mean = Row {
+            missing: mean_of(&|row| row.missing),
+            out_of_place: mean_of(&|row| row.out_of_place),
+            uneven: mean_of(&|row| row.uneven),
+        };
+        let chance = Row {
+            missing: mean_of(&|row| (row.missing - mean.missing).powi(2)).sqrt(),
+            out_of_place: mean_of(&|row| (row.out_of_place - mean.out_of_place).powi(2)).sqrt(),
+            uneven: mean_of(&|row| (row.uneven - mean.uneven).powi(2)).sqrt(),
+        };
+        Self { mean, chance }
+    }
 }
 
 /// What a row of frames looks like.
@@ -64,8 +90,14 @@ struct Row {
 }
 
 impl Row {
+    /// Of those of `times_s` that fall within a window, counted from 0.
+    fn of_window(times_s: &[f64], window: f64) -> Self {
+        let [from, to] =
+            [window, window + 1.0].map(|at| times_s.partition_point(|time| *time < at * WINDOW_S));
+        Self::of(&times_s[from..to], WINDOW_S)
+    }
+
     /// Of frames that came at `times_s` within `window_s`.
-    #[allow(clippy::cast_precision_loss)]
     fn of(times_s: &[f64], window_s: f64) -> Self {
         if times_s.len() < 2 {
             return Self { missing: 1.0, out_of_place: 0.0, uneven: 0.0 };
@@ -84,20 +116,27 @@ impl Row {
 }
 
 /// Instants at which a long row of frames comes under the bus's effects. What chance would draw comes
-/// evenly spread instead (multiples of irrational numbers), so that the same belief always gives the
-/// same row.
+/// from a fixed row of draws, so that the same belief always gives the same frames.
 fn expected_times_s(effects: &Effects) -> Vec<f64> {
     let (loss, late) = (effects.bus.frame_loss.share, effects.bus.command_jitter.latest_s);
-    let spread = |k: u32, step: f64| (f64::from(k) * step).fract();
     let mut before_s = 0.0_f64;
-    (0..ROW)
+    let frames = (f64::from(ROW) * WINDOW_S / PERIOD_S) as u32;
+    (0..frames)
         .filter_map(|k| {
-            let late_s = late * spread(k, 0.754_877_666);
             // Order is kept: a frame waits for the one before it.
-            before_s = before_s.max(f64::from(k) * PERIOD_S + late_s);
-            (spread(k, 0.569_840_291) >= loss).then_some(before_s)
+            before_s = before_s.max((f64::from(k) + 0.5) * PERIOD_S + late * drawn(2 * k));
+            (drawn(2 * k + 1) >= loss).then_some(before_s)
         })
         .collect()
+}
+
+/// The `k`th of a fixed row of draws between 0 and 1, alike likely.
+fn drawn(k: u32) -> f64 {
+    // SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
+    let mut z = u64::from(k).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 #[cfg(test)]
@@ -108,7 +147,7 @@ mod tests {
         let mut effects = Effects::default();
         effects.bus.frame_loss.share = loss;
         effects.bus.command_jitter.latest_s = late_s;
-        Row::of(&expected_times_s(&effects), f64::from(ROW) * PERIOD_S)
+        Expected::of(&effects).mean
     }
 
     #[test]
@@ -122,8 +161,8 @@ mod tests {
         let row = row(0.1, 0.0);
         assert!((row.missing - 0.1).abs() < 0.01, "{row:?}");
         assert!(row.out_of_place < 1e-9, "{row:?}");
-        // Holes of one period each: the square of one, for each frame lost.
-        assert!((row.uneven - (0.1_f64 / 0.9).sqrt()).abs() < 0.05, "{row:?}");
+        // Holes of any length: p (1 + p) / (1 - p)² is the mean square of what is lost in a row.
+        assert!((row.uneven - (0.1_f64 * 1.1).sqrt() / 0.9).abs() < 0.05, "{row:?}");
     }
 
     #[test]

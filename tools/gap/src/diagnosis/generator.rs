@@ -13,8 +13,7 @@ use super::{arms, bus, controllers, driving, joints, position_control, stance, t
 const STRIDE: usize = 10;
 
 /// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors.
-const STANDING: [&str; 3] =
-    ["imu-offset", "seal-stiction", "standstill-drag"];
+const STANDING: [&str; 3] = ["imu-offset", "seal-stiction", "standstill-drag"];
 
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

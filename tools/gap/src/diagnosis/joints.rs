@@ -24,9 +24,9 @@ pub(super) struct JointErrors {
 
 /// What is slower is told by the scrub of tyres as much as by the valve, s.
 const SLOW_S: f64 = 1.0;
-/// What sound machines leave of the slow and of the fast error, in floors (nominal logs of a second
-/// plant and one sound machine with tolerances).
-const ORDINARY: [f64; 2] = [0.4, 0.25];
+/// What sound machines leave of the slow and of the fast error while they steer, in floors (nominal logs
+/// of a second plant, and sound machines of our own).
+const ORDINARY: [f64; 2] = [0.8, 0.7];
 /// Half a play beyond which its time counts wholly, rad: less is told by no wire.
 const EXCUSED_RAD: f64 = 0.0025;
 /// Half a step of the steering currents' wire format over their range: 1.5 of 315 mA, with a little

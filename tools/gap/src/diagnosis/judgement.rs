@@ -10,14 +10,20 @@ use std::collections::BTreeMap;
 use super::candidates::Candidate;
 use super::evidence::Left;
 use super::excitation::not_testable;
+use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::places::places;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
-const SOMETHING: [f64; 2] = [20.0, 3.0];
+const SOMETHING: [f64; 2] = [18.0, 4.0];
+/// The same of a second cause beside the first.
+const SECOND: [f64; 2] = [28.0, 5.0];
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
-const UNKNOWN: [f64; 2] = [2.5, 4.0];
+const UNKNOWN: [f64; 2] = [1.75, 8.0];
+/// How much more a cause seems to leave whose one parameter has gone to the end of its range: it bends to
+/// what it is not.
+const AT_ITS_END: f64 = 1.6;
 /// Share of a gap that a right cause may leave: laws of machines differ in their details.
 const LAW_SHARE: f64 = 0.15;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
@@ -53,7 +59,20 @@ impl Findings {
             let allowed = 1.0 + LAW_SHARE * before.square.sqrt();
             if after.samples < SAMPLES_MIN { 0.0 } else { after.square.sqrt() / allowed }
         };
-        self.before.iter().zip(after).map(ratio).fold(0.0, f64::max)
+        let bent = if self.is_bent() { AT_ITS_END } else { 1.0 };
+        bent * self.before.iter().zip(after).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Whether the best cause has one parameter, and that at an end of its range.
+    fn is_bent(&self) -> bool {
+        let at_its_end = |fit: &Fit| match fit.hypothesis.effect.parameters {
+            [p] => {
+                let near = |end: f64| (fit.values[0] - end).abs() < 1.0e-3 * p.tolerance;
+                p.range.into_iter().any(|end| end != p.neutral && near(end))
+            }
+            _ => false,
+        };
+        self.single.first().is_some_and(|best| at_its_end(&best.fit))
     }
 
     /// Evidence of the best cause, nats.
@@ -65,9 +84,8 @@ impl Findings {
 
 /// The verdict on `findings`.
 pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
-    let something = logistic((findings.evidence().max(1e-3) / SOMETHING[0]).ln() * SOMETHING[1]);
-    let left_over = (findings.left_over() / UNKNOWN[0]).ln() * UNKNOWN[1];
-    let unknown = logistic(left_over);
+    let something = turned(findings.evidence(), SOMETHING);
+    let unknown = turned(findings.left_over(), UNKNOWN);
     let any = 1.0 - (1.0 - something) * (1.0 - unknown);
     let known = something * (1.0 - unknown);
     let causes = causes(findings, known);
@@ -104,7 +122,11 @@ fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
             vec![firsts, findings.pair.iter().map(|[_, second]| second).collect()]
         }
     };
-    let mut causes: Vec<Cause> = ranks.iter().flat_map(|rank| shares(rank, known)).collect();
+    let rank = |(k, rank): (usize, &Vec<&Candidate>)| {
+        let is_there = if k == 0 { 1.0 } else { turned(rank[0].score(), SECOND) };
+        shares(rank, known * is_there)
+    };
+    let mut causes: Vec<Cause> = ranks.iter().enumerate().flat_map(rank).collect();
     causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     causes.truncate(LISTED);
     causes
@@ -166,8 +188,10 @@ fn notes(inquiry: &Inquiry) -> Vec<String> {
     notes
 }
 
-fn logistic(x: f64) -> f64 {
-    1.0 / (1.0 + (-x).exp())
+/// Probability that `value` stands for: a half at the first of `scale`, and as sharp as the second says.
+fn turned(value: f64, [half, sharp]: [f64; 2]) -> f64 {
+    let value = value.max(0.0).powf(sharp);
+    value / (value + half.powf(sharp))
 }
 
 #[cfg(test)]
@@ -176,7 +200,7 @@ mod tests {
     use xt28_sim::effects::{Scope, find};
 
     use super::super::generator::{Generator, Signal};
-    use super::super::hypothesis::{Fit, Hypothesis};
+    use super::super::hypothesis::Hypothesis;
     use super::*;
 
     fn candidate(name: &str, score: f64) -> Candidate {

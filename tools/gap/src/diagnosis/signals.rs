@@ -106,16 +106,10 @@ impl Signals {
         duration_s: f64,
         terrain: Terrain,
     ) -> Result<Self, GapError> {
-        let missing: Vec<String> = needed()
-            .filter(|channel| series.get(channel).is_none_or(Series::is_empty))
-            .map(|channel| channel.to_string())
-            .collect();
-        if !missing.is_empty() {
-            let channels = missing.join(", ");
-            return Err(GapError::Unmeasured { log: name.to_owned(), channels });
-        }
+        complete(name, series)?;
         let len = (duration_s / DT_S) as usize;
         let sample = |channel| held(series.get(&channel), len);
+        let fresh = |channel| is_new(series.get(&channel), len);
         let wheels = |make: fn(Wheel) -> Channel| PerWheel::from_fn(|wheel| sample(make(wheel)));
         let (a, b) = (wheels(Channel::RetractCurrent), wheels(Channel::ExtendCurrent));
         let both = |a: &Samples, b: &Samples, opening: fn(f64, f64) -> f64| {
@@ -163,8 +157,8 @@ impl Signals {
             joint_rate_rad_s: [Channel::FrontJoint, Channel::RearJoint]
                 .map(|channel| slope_over(&sample(channel), 5)),
             joint_rad: [sample(Channel::FrontJoint), sample(Channel::RearJoint)],
-            is_fresh_drive_current: is_new(series.get(&Channel::SteerCurrent(SteerSide::FrontA)), len),
-            is_fresh_pump_pressure: is_new(series.get(&Channel::PumpPressure(PumpSide::OneA)), len),
+            is_fresh_drive_current: fresh(Channel::SteerCurrent(SteerSide::FrontA)),
+            is_fresh_pump_pressure: fresh(Channel::PumpPressure(PumpSide::OneA)),
             command_times_s: [Channel::ArmMode, Channel::Throttle].map(|channel| {
                 series.get(&channel).map_or_else(Vec::new, |s| s.iter().map(|(at, _)| at).collect())
             }),
@@ -228,6 +222,18 @@ pub(crate) fn needed() -> impl Iterator<Item = Channel> {
         )
     };
     Channel::all().into_iter().filter(move |c| !receiver.contains(c) && !unused(c))
+}
+
+/// Refuses `series` that lack what diagnosis needs.
+fn complete(name: &str, series: &AllSeries) -> Result<(), GapError> {
+    let missing: Vec<String> = needed()
+        .filter(|channel| series.get(channel).is_none_or(Series::is_empty))
+        .map(|channel| channel.to_string())
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(GapError::Unmeasured { log: name.to_owned(), channels: missing.join(", ") })
 }
 
 /// The value in force at each instant of the clock; before the first sample, the first.

@@ -4,7 +4,7 @@ use xt28_machine::Machine;
 
 use super::svg::escape;
 use super::words::headline;
-use super::{engineer, manager};
+use super::{brief, engineer};
 use crate::diagnosis::{Details, Diagnosis};
 
 const STYLE: &str = "\
@@ -61,7 +61,7 @@ pub fn html(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>{}</title><style>\n{STYLE}</style></head><body>\n<section class=\"page\">{}{}</section>\n<section class=\"page\">{}{}</section>\n</body></html>\n",
         escape(&headline(diagnosis)),
         header("verdict"),
-        manager::page(machine, diagnosis, details),
+        brief::page(machine, diagnosis, details),
         header("evidence"),
         engineer::page(diagnosis, details)
     )

@@ -63,7 +63,7 @@ fn message(style: Style, ms: u64, id: u32, data: &[u8]) -> Vec<u8> {
     let mut out = if style.ros1 { vec![7, 0, 0, 0] } else { vec![0, u8::from(!style.big), 0, 0] };
     let start = if style.ros1 { 0 } else { 4 };
     let word = |out: &mut Vec<u8>, value: u32| {
-        while !style.ros1 && (out.len() - start) % 4 != 0 {
+        while !style.ros1 && !(out.len() - start).is_multiple_of(4) {
             out.push(0);
         }
         out.extend(if style.big { value.to_be_bytes() } else { value.to_le_bytes() });

@@ -11,7 +11,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 use xt28_sim::{Effects, Parts, Terrain};
 
 use super::signals::{Samples, Signals};
-use carried::Carrier;
+use carried::{Carrier, held_nm};
 pub(super) use instants::{Instant, instants};
 use layout::{Layout, Reach};
 use plane::{Foot, Plane};
@@ -62,7 +62,8 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         if !flat {
             return UNKNOWN;
         }
-        let arms = PerWheel::from_fn(|w| carriers[w].at(instant));
+        let holds_nm = held_nm(instant, effects);
+        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, holds_nm[w]));
         judge(instant, &arms, &parts, machine, effects).unwrap_or(UNKNOWN)
     };
     let errors: Vec<Error> = s.instants(machine).iter().map(judge).collect();

@@ -1,12 +1,15 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::instants::{AtWheel, Instant, PRESSURE_FILTER_S};
 use super::layout::Reach;
 use super::motion::lagged;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
+
+/// Halvings in which the motors' holds are balanced: to a millionth.
+const BISECTIONS: usize = 20;
 
 /// One arm as believed: how its sensors read and what hinders it.
 pub(super) struct Carrier<'a> {
@@ -45,17 +48,17 @@ impl<'a> Carrier<'a> {
         }
     }
 
-    /// Where the wheel is, and what it presses on the ground, N.
+    /// Where the wheel is, and what it presses on the ground, N; its idle motor holds `holds_nm`.
     ///
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
     /// `drop + radius` below the pivot: the motor's torque is between wheel and arm.
-    pub(super) fn at(&self, instant: &Instant) -> (Reach, f64) {
-        let AtWheel { stroke_m, load_n, torque_nm, rolls, held } = instant.wheels[self.wheel];
+    pub(super) fn at(&self, instant: &Instant, holds_nm: f64) -> (Reach, f64) {
+        let AtWheel { stroke_m, load_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
         let e = &self.effects.wheels[self.wheel];
         let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
         let oil_n = (load_n - e.pressure_bias.bias_pa * self.area_m2) / e.pressure_scale.factor;
         let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
-        let drive_nm = torque_nm - held * e.standstill_drag.torque_nm;
+        let drive_nm = torque_nm - holds_nm;
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
         let below_m = self.parts.arms[self.wheel].extends * (pose.drop_m + radius_m) / radius_m;
@@ -63,6 +66,28 @@ impl<'a> Carrier<'a> {
         let normal_n = moment_nm / (pose.reach_m - below_m * rolls * self.resistance_m);
         (Reach { reach_m: pose.reach_m, drop_m: pose.drop_m }, normal_n)
     }
+}
+
+/// What each idle motor holds its wheel by, Nm: against its last turn, and all together by nothing, for
+/// the machine stands still. Wheels that are pushed the same way push the machine instead.
+pub(super) fn held_nm(instant: &Instant, effects: &Effects) -> PerWheel<f64> {
+    let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm);
+    if most_nm.iter().all(|(_, nm)| *nm == 0.0) {
+        return PerWheel::splat(0.0);
+    }
+    let each = |less: f64| {
+        PerWheel::from_fn(|w| most_nm[w] * (instant.wheels[w].held - less).clamp(-1.0, 1.0))
+    };
+    let (mut low, mut high) = (-2.0, 2.0);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if each(middle).sum() > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    each(0.5 * (low + high))
 }
 
 /// Friction of the seals on the measured motion, as late as the pressures are; N.

@@ -13,7 +13,7 @@ use crate::{Grid, Nearest};
 /// Cells along a side of the window that a flood stays in: 1.6 m, more than any ball of the vehicle.
 const WINDOW: i16 = 16;
 /// Most edges that a flood has yet to cross.
-const OPEN_MAX: usize = 48;
+const OPEN_MAX: usize = 64;
 
 /// A triangle: its cell in the window and whether it is the one above the cell's diagonal.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -82,6 +82,11 @@ impl<'a> Docket<'a> {
         all
     }
 
+    /// What each signal leaves with tolerances where they are believed to be.
+    pub(super) fn unbent(&self) -> Vec<Left> {
+        self.fit.unbent()
+    }
+
     /// What is left on each signal of all runs once `fits` are believed.
     pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
         let mut effects = self.fit.base().clone();

@@ -61,11 +61,11 @@ impl Inquiry {
         let docket = |base: &_| Docket::new(&fit, &held, &self.machine, base);
         tell("driving every block with what was measured", 0.0);
         let first = docket(&self.believed.clone().into());
-        let before = first.left(&[]);
+        let (before, unbent) = (first.left(&[]), first.unbent());
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first().cloned() else {
-            return Findings { before, single, pair: Vec::new(), after: Vec::new() };
+            return Findings { before, unbent, single, pair: Vec::new(), after: Vec::new() };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
@@ -74,7 +74,7 @@ impl Inquiry {
             Some([_, second]) => beside.left(&[&second.fit]),
             None => first.left(&[&best.fit]),
         };
-        Findings { before, single, pair, after }
+        Findings { before, unbent, single, pair, after }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

@@ -207,8 +207,19 @@ impl<'a> Evidence<'a> {
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
         let sums = self.sums(belief.into(), &|_| true);
         let step = self.step(&sums);
+        self.left_at(&sums, &step)
+    }
+
+    /// What the base leaves on each signal, tolerances where they are believed to be.
+    #[must_use]
+    pub fn unbent(&self) -> Vec<Left> {
+        let sums = self.sums((&self.base.effects).into(), &|_| false);
+        self.left_at(&sums, &DVector::zeros(self.knobs.len()))
+    }
+
+    fn left_at(&self, sums: &[Cow<'_, Sums>], step: &DVector<f64>) -> Vec<Left> {
         let mut all = Vec::new();
-        for (watch, squares) in self.watches.iter().zip(self.remaining(&sums, &step)) {
+        for (watch, squares) in self.watches.iter().zip(self.remaining(sums, step)) {
             for (group, square) in watch.stack.groups.iter().zip(squares) {
                 all.push(Left {
                     generator: watch.stack.generator,

@@ -2,6 +2,7 @@
 //! and whether every wheel either touches the ground or carries nothing.
 
 mod carried;
+mod holds;
 mod instants;
 mod layout;
 mod motion;
@@ -11,7 +12,8 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 use xt28_sim::{Effects, Parts, Terrain};
 
 use super::signals::{Samples, Signals};
-use carried::{Carrier, held_nm};
+use carried::Carrier;
+use holds::Holds;
 pub(super) use instants::{Instant, instants};
 use layout::{Layout, Reach};
 use plane::{Foot, Plane};
@@ -57,13 +59,14 @@ const UNKNOWN: Error = Error {
 pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -> StanceErrors {
     let parts = Parts::new(machine, effects);
     let carriers = PerWheel::from_fn(|w| Carrier::new(s, machine, effects, &parts, w));
+    let holds = Holds::new(s, machine, effects, &parts);
     let flat = matches!(s.terrain, Terrain::Flat);
     let judge = |instant: &Instant| {
         if !flat {
             return UNKNOWN;
         }
-        let holds_nm = held_nm(instant, effects);
-        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, holds_nm[w]));
+        let held = holds.as_ref().map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
+        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
         judge(instant, &arms, &parts, machine, effects).unwrap_or(UNKNOWN)
     };
     let errors: Vec<Error> = s.instants(machine).iter().map(judge).collect();

@@ -1,15 +1,13 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::{Effects, Parts};
 
+use super::holds::unflickered;
 use super::instants::{AtWheel, Instant, PRESSURE_FILTER_S};
 use super::layout::Reach;
 use super::motion::lagged;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
-
-/// Halvings in which the motors' holds are balanced: to a millionth.
-const BISECTIONS: usize = 20;
 
 /// One arm as believed: how its sensors read and what hinders it.
 pub(super) struct Carrier<'a> {
@@ -22,6 +20,8 @@ pub(super) struct Carrier<'a> {
     own_n: f64,
     /// Rolling resistance per load, m.
     resistance_m: f64,
+    /// Grip of the ground.
+    friction: f64,
     /// Friction of the seals as late as the pressures are, N; empty without any.
     seal_n: Samples,
 }
@@ -44,50 +44,75 @@ impl<'a> Carrier<'a> {
             area_m2: machine.arms.area_bore_m2,
             own_n: carried_kg * GRAVITY_M_S2,
             resistance_m: (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m,
+            friction: machine.wheels.friction,
             seal_n: seal_friction_n(s, effects, wheel),
         }
     }
 
-    /// Where the wheel is, and what it presses on the ground, N; its idle motor holds `holds_nm`.
-    ///
+    /// Where the wheel is, and what it presses on the ground, N; its idle motor holds it by
+    /// `share` of the most.
+    pub(super) fn at(&self, instant: &Instant, share: f64) -> (Reach, f64) {
+        let moments = self.moments(instant);
+        (moments.reach, moments.normal_n(self.holds_nm(&moments, share)))
+    }
+
+    /// What its motor holds a wheel by that is asked for `share` of the most, Nm: no more than the
+    /// ground takes before the wheel slips.
+    fn holds_nm(&self, moments: &Moments, share: f64) -> f64 {
+        let asked_nm = share * self.effects.wheels[self.wheel].standstill_drag.torque_nm;
+        if asked_nm == 0.0 {
+            return 0.0;
+        }
+        let grip_m = self.friction * self.parts.radius_m;
+        if asked_nm.abs() <= grip_m * moments.normal_n(asked_nm) {
+            return asked_nm;
+        }
+        // The hold that is as large as the grip of the load that it makes itself.
+        let grip_m = grip_m.copysign(asked_nm);
+        let slips_nm = grip_m * moments.unheld_nm / (moments.load_arm_m - moments.below_m * grip_m);
+        if slips_nm * asked_nm > 0.0 {
+            slips_nm.clamp(-asked_nm.abs(), asked_nm.abs())
+        } else {
+            0.0
+        }
+    }
+
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
     /// `drop + radius` below the pivot: the motor's torque is between wheel and arm.
-    pub(super) fn at(&self, instant: &Instant, holds_nm: f64) -> (Reach, f64) {
+    fn moments(&self, instant: &Instant) -> Moments {
         let AtWheel { stroke_m, load_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
         let e = &self.effects.wheels[self.wheel];
         let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
         let oil_n = (load_n - e.pressure_bias.bias_pa * self.area_m2) / e.pressure_scale.factor;
         let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
-        let drive_nm = torque_nm - holds_nm;
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
         let below_m = self.parts.arms[self.wheel].extends * (pose.drop_m + radius_m) / radius_m;
-        let moment_nm = self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * drive_nm;
-        let normal_n = moment_nm / (pose.reach_m - below_m * rolls * self.resistance_m);
-        (Reach { reach_m: pose.reach_m, drop_m: pose.drop_m }, normal_n)
+        Moments {
+            reach: Reach { reach_m: pose.reach_m, drop_m: pose.drop_m },
+            unheld_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * torque_nm,
+            below_m,
+            load_arm_m: pose.reach_m - below_m * rolls * self.resistance_m,
+        }
     }
 }
 
-/// What each idle motor holds its wheel by, Nm: against its last turn, and all together by nothing, for
-/// the machine stands still. Wheels that are pushed the same way push the machine instead.
-pub(super) fn held_nm(instant: &Instant, effects: &Effects) -> PerWheel<f64> {
-    let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm);
-    if most_nm.iter().all(|(_, nm)| *nm == 0.0) {
-        return PerWheel::splat(0.0);
+/// Moments about an arm's pivot at one instant.
+struct Moments {
+    reach: Reach,
+    /// Of everything but the ground's push and an idle motor's hold, Nm.
+    unheld_nm: f64,
+    /// What a wheel's torque makes of itself about the pivot.
+    below_m: f64,
+    /// What the ground's push acts by, m.
+    load_arm_m: f64,
+}
+
+impl Moments {
+    /// What the wheel presses on the ground, N.
+    fn normal_n(&self, holds_nm: f64) -> f64 {
+        (self.unheld_nm + self.below_m * holds_nm) / self.load_arm_m
     }
-    let each = |less: f64| {
-        PerWheel::from_fn(|w| most_nm[w] * (instant.wheels[w].held - less).clamp(-1.0, 1.0))
-    };
-    let (mut low, mut high) = (-2.0, 2.0);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if each(middle).sum() > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    each(0.5 * (low + high))
 }
 
 /// Friction of the seals on the measured motion, as late as the pressures are; N.
@@ -98,9 +123,11 @@ fn seal_friction_n(s: &Signals, effects: &Effects, wheel: Wheel) -> Samples {
     }
     let scale = effects.wheels[wheel].stroke_scale.factor;
     let mut friction_n = 0.0;
-    let step = |rate: &f64| {
-        friction_n = law.step(friction_n, rate / scale, DT_S);
+    let mut last_m = None;
+    let step = |stroke_m: f64| {
+        let travel_m = stroke_m - last_m.replace(stroke_m).unwrap_or(stroke_m);
+        friction_n = law.step(friction_n, travel_m / DT_S / scale, DT_S);
         friction_n
     };
-    lagged(s.stroke_rate_m_s[wheel].iter().map(step), PRESSURE_FILTER_S)
+    lagged(unflickered(&s.smooth_stroke_m[wheel]).into_iter().map(step), PRESSURE_FILTER_S)
 }

@@ -9,8 +9,6 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
 /// Samples of the log from one instant to the next, half a second: a stance changes slowly.
 const STRIDE: usize = 50;
-/// Turn of a wheel over which an idle motor's hold builds up, rad (assumed: 2 mm at the rim).
-const YIELDS_RAD: f64 = 0.003;
 /// Speed over which rolling resistance fades in, rad/s: 5 cm/s at the rim (assumed).
 const FADES_RAD_S: f64 = 0.07;
 /// Stroke rate at which an instant is twice as doubtful as one at rest, m/s, and how long that lasts, s.
@@ -52,9 +50,6 @@ pub(super) struct AtWheel {
     pub(super) torque_nm: f64,
     /// Share of the rolling resistance that acts, -1 to 1: against the wheel's turning.
     pub(super) rolls: f64,
-    /// Share of an idle motor's hold that acts, -1 to 1: against the wheel's last turn; zero while the
-    /// machine is asked to travel.
-    pub(super) held: f64,
 }
 
 /// The instants of a run.
@@ -101,33 +96,25 @@ fn wheel_samples(
     let torque_nm = late(pump_torque_nm(s, machine, wheel));
     let speed_rad_s = &s.wheel_speed_rad_s[wheel];
     let rolls = late(speed_rad_s.iter().map(|speed| (speed / FADES_RAD_S).tanh()).collect());
-    let held = late(held(speed_rad_s, &s.throttle));
     move |i| AtWheel {
         stroke_m: stroke_m[i],
         load_n: load_n[i],
         torque_nm: torque_nm[i],
         rolls: rolls[i],
-        held: held[i],
     }
 }
 
 /// Torque of the wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
-fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: xt28_machine::Wheel) -> Samples {
+pub(super) fn pump_torque_nm(
+    s: &Signals,
+    machine: &Machine,
+    wheel: xt28_machine::Wheel,
+) -> Samples {
     let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
     let [back, forward] = if first { [0, 1] } else { [2, 3] };
     let (back, forward) = (&s.pump_pressure_pa[back], &s.pump_pressure_pa[forward]);
     let full = machine.wheels.torque_max_nm / FULL_PRESSURE_PA;
     forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
-}
-
-/// Which way an idle motor holds its wheel, -1 to 1: it yields a little before it slips.
-fn held(speed_rad_s: &Samples, throttle: &Samples) -> Samples {
-    let mut turn = 0.0_f64;
-    let step = |(speed, asked): (&f64, &f64)| {
-        turn = (turn + speed * DT_S / YIELDS_RAD).clamp(-1.0, 1.0);
-        if *asked == 0.0 { turn } else { 0.0 }
-    };
-    speed_rad_s.iter().zip(throttle).map(step).collect()
 }
 
 /// How many times as doubtful as at rest each sample is: arms that move shake the machine.

@@ -1,0 +1,165 @@
+//! How hard idle motors hold their wheels: each against its own turning, all together against nothing
+//! but what the pumps still push.
+//!
+//! An arm that swings at standstill wants its wheel to roll. The machine moves to where the wheels'
+//! holds balance, so that each wheel rolls by its arm's swing less that of all. A hold builds up over
+//! a little rolling, then slips, and stays when the arms come to rest. Wheel speeds are read too
+//! coarsely for this (7 mm/s at the rim), strokes are not.
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_sim::{Effects, Parts};
+
+use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
+use super::motion::lagged;
+use crate::diagnosis::signals::{Samples, Signals};
+
+/// Rolling over which a hold builds up, m (assumed).
+const YIELDS_M: f64 = 0.001;
+/// Half of the stroke by which an arm that stands still may seem to move, m: readings flicker.
+const FLICKER_M: f64 = 0.0004;
+/// Speed of the wheels, all together, at which the machine travels, rad/s (2 cm/s at the rim), and the
+/// samples until it has come to rest after that. A machine that brakes is held by all of its wheels.
+const TRAVELS_RAD_S: f64 = 0.03;
+const COMES_TO_REST: usize = 100;
+/// Swing after which the wheels are held by that alone, m.
+const SWUNG_M: f64 = 2.0 * YIELDS_M;
+/// Samples from one step to the next.
+const STRIDE: usize = 5;
+/// Halvings in which the holds are balanced: to a millionth.
+const BISECTIONS: usize = 20;
+
+/// Share of its most by which each wheel is held, -1 to 1, forward where it rolled forward.
+pub(super) struct Holds {
+    steps: Vec<PerWheel<f64>>,
+}
+
+/// What a log says of one wheel, step by step.
+struct Rim {
+    /// How far the wheel would have rolled beside its arm by the arm's swing, as late as the loads are, m.
+    swing_m: Samples,
+    /// Torque at which it slips, Nm.
+    grip_nm: Samples,
+    /// Torque that the pumps make, Nm.
+    pushed_nm: Samples,
+}
+
+impl Holds {
+    /// Holds over a run with what `effects` say of the motors; none where no motor holds.
+    pub(super) fn new(
+        s: &Signals,
+        machine: &Machine,
+        effects: &Effects,
+        parts: &Parts,
+    ) -> Option<Self> {
+        let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm);
+        if most_nm.iter().all(|(_, nm)| *nm == 0.0) {
+            return None;
+        }
+        let rims = PerWheel::from_fn(|w| Rim::new(s, machine, parts, w));
+        let resisting = machine.wheels.rolling_resistance / machine.wheels.friction;
+        let (mut held, mut resting) = (PerWheel::splat(0.0), COMES_TO_REST);
+        let mut swung_m = 0.0_f64;
+        let mut steps = vec![held];
+        for (k, i) in (0..s.len).step_by(STRIDE).enumerate().skip(1) {
+            let travels = s.throttle[i] != 0.0 || s.mean_wheel_speed_rad_s(i).abs() > TRAVELS_RAD_S;
+            resting = if travels { 0 } else { resting + STRIDE };
+            if resting <= COMES_TO_REST {
+                (held, swung_m) = (PerWheel::splat(0.0), 0.0);
+                steps.push(held);
+                continue;
+            }
+            let swing = PerWheel::from_fn(|w| rims[w].swing_m[k] - rims[w].swing_m[k - 1]);
+            swung_m += swing.iter().map(|(_, m)| m.abs()).fold(0.0, f64::max);
+            let wanted = PerWheel::from_fn(|w| held[w] + swing[w] / YIELDS_M);
+            let weight_nm = PerWheel::from_fn(|w| {
+                let grip_nm = rims[w].grip_nm[k];
+                most_nm[w].abs().min(grip_nm) + resisting * grip_nm
+            });
+            let pushed_nm = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
+            held = balanced(&wanted, &weight_nm, pushed_nm);
+            // How the wheels were held when they came to rest is not known.
+            let is_known = swung_m > SWUNG_M;
+            steps.push(if is_known { held } else { PerWheel::splat(0.0) });
+        }
+        Some(Self { steps })
+    }
+
+    /// Shares at a sample of the log.
+    pub(super) fn at(&self, sample: usize) -> PerWheel<f64> {
+        self.steps[(sample / STRIDE).min(self.steps.len() - 1)]
+    }
+}
+
+impl Rim {
+    fn new(s: &Signals, machine: &Machine, parts: &Parts, wheel: Wheel) -> Self {
+        let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
+        let arm = &parts.arms[wheel];
+        let own_kg = parts.wheel.mass_kg + arm.body.mass_kg * machine.vehicle.arm_com_share;
+        let slips_m = machine.wheels.friction * parts.radius_m;
+        let stroke_m = late(unflickered(&s.smooth_stroke_m[wheel]));
+        let loads_n = s.cylinder_load_n[wheel].iter();
+        let steps = stroke_m.iter().zip(loads_n).step_by(STRIDE).map(|(stroke_m, load_n)| {
+            let pose = parts.linkage.at_stroke(*stroke_m);
+            let normal_n = own_kg * GRAVITY_M_S2 + load_n * pose.lever_m / pose.reach_m;
+            let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
+            (turned_m, slips_m * normal_n.max(0.0))
+        });
+        let (swing_m, grip_nm) = steps.unzip();
+        let pushed_nm = late(pump_torque_nm(s, machine, wheel));
+        Self { swing_m, grip_nm, pushed_nm: pushed_nm.into_iter().step_by(STRIDE).collect() }
+    }
+}
+
+/// Strokes that move only where the readings leave the band about them.
+pub(super) fn unflickered(stroke_m: &Samples) -> Samples {
+    let mut at_m = stroke_m.first().copied().unwrap_or_default();
+    let follow = |reading_m: &f64| {
+        at_m = at_m.clamp(reading_m - FLICKER_M, reading_m + FLICKER_M);
+        at_m
+    };
+    stroke_m.iter().map(follow).collect()
+}
+
+/// Shares nearest to `wanted`, all less by the same, whose torques come to `pushed_nm`.
+fn balanced(wanted: &PerWheel<f64>, weight_nm: &PerWheel<f64>, pushed_nm: f64) -> PerWheel<f64> {
+    let less = |by: f64| wanted.map(|share| (share - by).clamp(-1.0, 1.0));
+    let excess_nm =
+        |by: f64| less(by).iter().map(|(w, share)| share * weight_nm[w]).sum::<f64>() - pushed_nm;
+    let reach = 1.0 + wanted.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max);
+    let (mut low, mut high) = (-reach, reach);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if excess_nm(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    less(0.5 * (low + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_that_want_the_same_move_the_machine_and_are_not_held() {
+        let held = balanced(&PerWheel::splat(3.0), &PerWheel::splat(4e3), 0.0);
+        assert!(held.iter().all(|(_, share)| share.abs() < 1e-4), "{held:?}");
+    }
+
+    #[test]
+    fn wheels_that_want_to_part_are_held_against_each_other() {
+        let wanted = PerWheel([2.0, 2.0, 0.0, 0.0, -2.0, -2.0]);
+        let held = balanced(&wanted, &PerWheel::splat(4e3), 0.0);
+        assert!(held[Wheel::Fr] > 0.99 && held[Wheel::Bl] < -0.99, "{held:?}");
+        assert!(held[Wheel::Mr].abs() < 1e-4, "{held:?}");
+    }
+
+    #[test]
+    fn a_wheel_held_alone_moves_the_machine() {
+        let weight = PerWheel::from_fn(|w| if w == Wheel::Fr { 4e3 } else { 0.0 });
+        let wanted = PerWheel([2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!(balanced(&wanted, &weight, 0.0)[Wheel::Fr].abs() < 1e-4);
+    }
+}

@@ -31,8 +31,6 @@ const CORRELATED: f64 = 20.0;
 const ROUNDS: usize = 4;
 /// A round that gains less than this share of the cost is the last.
 const ENOUGH: f64 = 2.0e-3;
-/// Half of a 90 % interval in standard deviations.
-const NINETY: f64 = 1.645;
 
 /// Causes fitted anew.
 #[derive(Clone, Debug)]
@@ -80,10 +78,14 @@ impl HowFar {
         let effects = self.turned(&turns, &at);
         let mut estimates = vec![Vec::new(); causes.len()];
         for ((turn, value), sigma) in turns.iter().zip(&at).zip(&sigma) {
-            let [low, high] = turn.parameter.range;
-            let end = |sign: f64| (value + sign * NINETY * sigma).clamp(low, high);
-            let value = [*value, end(-1.0), end(1.0)];
-            estimates[turn.cause].push(Estimate { name: turn.parameter.name, value });
+            let estimate = Estimate::new(turn.parameter, *value, *sigma);
+            // One that went to the end of its range is known no better than it was before.
+            let at_its_end = turn.parameter.range.contains(value);
+            let before = causes[turn.cause].parameters.iter().find(|e| e.name == estimate.name);
+            estimates[turn.cause].push(match before {
+                Some(before) if at_its_end => estimate.reaching(before),
+                _ => estimate,
+            });
         }
         let shrink = self.shrink_of(&self.gaps(&effects, since_s));
         Refit { shrink, effects, estimates, fit_gap: [before, after] }

@@ -28,6 +28,7 @@ mod judgement;
 mod knob;
 mod loads;
 mod next_drive;
+mod overlap;
 mod places;
 mod position_control;
 mod pump;

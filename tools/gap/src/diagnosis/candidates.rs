@@ -27,6 +27,9 @@ pub struct Candidate {
     /// What the same values gain on the runs held out, nats; below zero they do harm. None where none
     /// was held out.
     pub held_gain: Option<f64>,
+    /// Share of what it gains that another law of the cause beside it could not explain: one where it is
+    /// the first.
+    pub own_share: f64,
 }
 
 /// How many times as much as it foretells a cause may explain, and what it may explain beside, nats. A
@@ -47,7 +50,7 @@ impl Candidate {
     pub fn score(&self) -> f64 {
         let sum = self.fit.log_evidence + self.held_gain.unwrap_or_default();
         let [times, beside] = FORETOLD;
-        self.held_gain.map_or(sum, |held| sum.min(times * (held + beside)))
+        self.own_share * self.held_gain.map_or(sum, |held| sum.min(times * (held + beside)))
     }
 }
 
@@ -100,7 +103,7 @@ impl<'a> Docket<'a> {
     fn weighed(&self, fit: Fit) -> Candidate {
         let gain = |held| fit.hypothesis.gain(held, fit.from_s, &fit.values);
         let held_gain = self.held.as_ref().map(gain);
-        Candidate { fit, held_gain }
+        Candidate { fit, held_gain, own_share: 1.0 }
     }
 
     /// The same candidate setting in late, where that is worth it; one that does, at a better instant.

@@ -3,10 +3,11 @@
 use xt28_sim::effects::Effect;
 
 use super::candidates::{Candidate, Docket};
-use super::evidence::Base;
+use super::evidence::{Base, Left};
 use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
+use super::overlap::own_share;
 use super::signals::Signals;
 use super::verdict::Diagnosis;
 
@@ -65,14 +66,18 @@ impl Inquiry {
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first().cloned() else {
-            return Findings { before, unbent, single, pair: Vec::new(), after: Vec::new() };
+            let after = before.clone();
+            return Findings { before, unbent, single, pair: Vec::new(), after };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
+        let left = |one: &Candidate| first.left(&[&one.fit]);
+        let explained = pair.first().map(|[one, _]| [before.clone(), left(one)]);
+        let pair = explained.map_or(Vec::new(), |first| owned(pair, &first, &beside));
         let after = match pair.first() {
             Some([_, second]) => beside.left(&[&second.fit]),
-            None => first.left(&[&best.fit]),
+            None => left(&best),
         };
         Findings { before, unbent, single, pair, after }
     }
@@ -118,4 +123,21 @@ impl Inquiry {
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
         (pairs.collect(), court)
     }
+}
+
+/// Pairs by what their seconds explain of their own. The first's signals are `first`, before and after
+/// it is believed; the seconds are `beside` it.
+fn owned(
+    mut pairs: Vec<[Candidate; 2]>,
+    [none, first]: &[Vec<Left>; 2],
+    beside: &Docket,
+) -> Vec<[Candidate; 2]> {
+    let alone = beside.left(&[]);
+    for [_, second] in &mut pairs {
+        let both = beside.left(&[&second.fit]);
+        second.own_share = own_share([none, first], [&alone, &both]);
+    }
+    pairs.retain(|[_, second]| second.score() > SECOND_MIN);
+    pairs.sort_by(|[_, a], [_, b]| b.score().total_cmp(&a.score()));
+    pairs
 }

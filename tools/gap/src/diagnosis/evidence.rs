@@ -69,6 +69,13 @@ pub struct Left {
     pub samples: f64,
 }
 
+impl Left {
+    /// What the signal costs, nats.
+    pub(super) fn cost(&self) -> f64 {
+        0.5 * cost_of_squares(self.square * self.samples, self.samples)
+    }
+}
+
 /// Something to believe, and from when on in every run, s.
 #[derive(Clone, Copy, Debug)]
 pub struct Belief<'e> {

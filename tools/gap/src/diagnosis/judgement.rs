@@ -36,11 +36,10 @@ const CLASS: f64 = 0.2;
 const LISTED: usize = 10;
 /// Signals with fewer independent samples say nothing of what is left.
 const SAMPLES_MIN: f64 = 8.0;
-/// 5 % lie beyond this many standard deviations on either side.
-const NINETY: f64 = 1.645;
-/// How much wider an interval is than noise alone makes it, and by what share of an effect's size: laws of
-/// machines differ (six in ten intervals held the truth without).
-const WIDER: [f64; 2] = [2.0, 0.03];
+/// Effects whose law remembers how the machine came to rest, which no log tells, and what a right cause
+/// of that kind may leave.
+const REMEMBERS: [&str; 2] = ["seal-stiction", "standstill-drag"];
+const MEMORY_SHARE: f64 = 0.6;
 
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug)]
@@ -61,13 +60,23 @@ impl Findings {
     /// How far the worst signal lies above what a right answer leaves; about one where all is explained.
     #[must_use]
     pub fn left_over(&self) -> f64 {
-        let after = if self.single.is_empty() { &self.before } else { &self.after };
+        let share = if self.remembers() { MEMORY_SHARE } else { LAW_SHARE };
         let ratio = |(unbent, after): (&Left, &Left)| {
-            let allowed = 1.0 + LAW_SHARE * unbent.square.sqrt();
+            let allowed = 1.0 + share * unbent.square.sqrt();
             if after.samples < SAMPLES_MIN { 0.0 } else { after.square.sqrt() / allowed }
         };
         let bent = if self.is_bent() { AT_ITS_END } else { 1.0 };
-        bent * self.unbent.iter().zip(after).map(ratio).fold(0.0, f64::max)
+        bent * self.unbent.iter().zip(&self.after).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Whether what is believed has an effect in it that remembers.
+    fn remembers(&self) -> bool {
+        let pair = self.pair.first().into_iter().flatten();
+        self.single
+            .first()
+            .into_iter()
+            .chain(pair)
+            .any(|believed| REMEMBERS.contains(&believed.fit.hypothesis.effect.name))
     }
 
     /// Whether the best cause has one parameter, and that at an end of its range.
@@ -176,15 +185,7 @@ fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
 fn estimates(candidate: &Candidate) -> Vec<Estimate> {
     let fit = &candidate.fit;
     let parameters = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
-    let estimate = |(p, (value, sigma)): (&'static xt28_sim::effects::Parameter, (&f64, &f64))| {
-        let reach = NINETY * (WIDER[0] * sigma).hypot(WIDER[1] * (value - p.neutral));
-        let [low, high] = p.range;
-        Estimate {
-            name: p.name,
-            value: [*value, (value - reach).max(low), (value + reach).min(high)],
-        }
-    };
-    parameters.map(estimate).collect()
+    parameters.map(|(p, (value, sigma))| Estimate::new(p, *value, *sigma)).collect()
 }
 
 fn notes(inquiry: &Inquiry) -> Vec<String> {
@@ -217,7 +218,7 @@ mod tests {
         let sigma = vec![0.0; values.len()];
         let hypothesis = Hypothesis { effect, scope: Scope::All };
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Candidate { fit, held_gain: None }
+        Candidate { fit, held_gain: None, own_share: 1.0 }
     }
 
     fn left(square: f64) -> Vec<Left> {

@@ -5,7 +5,7 @@ use xt28_machine::Machine;
 use xt28_sim::effects::Effect;
 
 use super::evidence::{Base, Evidence, Left};
-use super::hypothesis::Fit;
+use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::search::search;
 use super::signals::Signals;
@@ -44,6 +44,11 @@ pub(super) struct Docket<'a> {
 }
 
 impl Candidate {
+    /// Name of the effect.
+    pub(super) fn name(&self) -> &'static str {
+        self.fit.hypothesis.effect.name
+    }
+
     /// Evidence of the runs fitted and foretelling of those held out, nats over the base; a cause that
     /// foretells next to nothing has no more than that.
     #[must_use]
@@ -75,14 +80,27 @@ impl<'a> Docket<'a> {
         let asked = all.len().min(ASKED);
         let late: Vec<Candidate> =
             all[..asked].par_iter().filter_map(|candidate| self.set_in(candidate)).collect();
-        for candidate in late {
-            let same = |other: &Candidate| other.fit.hypothesis == candidate.fit.hypothesis;
-            if let Some(place) = all.iter().position(same) {
-                all[place] = candidate;
-            }
-        }
+        late.into_iter().for_each(|candidate| settle(&mut all, candidate));
+        rank(&mut all);
+        let elsewhere = all.first().map_or(Vec::new(), |best| self.elsewhere(best));
+        elsewhere.into_iter().for_each(|candidate| settle(&mut all, candidate));
         rank(&mut all);
         all
+    }
+
+    /// The effect of one that sets in late on all other wheels from there on: only one scope's beginning
+    /// may have been close to one that was looked at.
+    fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
+        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
+        if from_s == 0.0 {
+            return Vec::new();
+        }
+        let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
+        let others = others.filter(|other| *other != hypothesis).map(|other| {
+            let found = self.weighed(other.refit(&self.fit, from_s, values));
+            self.set_in(&found).unwrap_or(found)
+        });
+        others.filter(|other| other.score() > best.score()).collect()
     }
 
     /// What each signal leaves with tolerances where they are believed to be.
@@ -125,6 +143,14 @@ impl<'a> Docket<'a> {
         let late = self.weighed(hypothesis.refit(&self.fit, at_s, &late.values));
         let least = if is_late { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
+    }
+}
+
+/// Puts a candidate in the place of what was known of its hypothesis.
+fn settle(all: &mut Vec<Candidate>, candidate: Candidate) {
+    match all.iter().position(|known| known.fit.hypothesis == candidate.fit.hypothesis) {
+        Some(place) => all[place] = candidate,
+        None => all.push(candidate),
     }
 }
 

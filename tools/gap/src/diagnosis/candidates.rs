@@ -60,15 +60,14 @@ impl Candidate {
 }
 
 impl<'a> Docket<'a> {
-    /// The runs in `fit` and `held` around `base`.
+    /// The runs in `fit` and `held` around `base`, with the tolerances of `knobs`.
     pub(super) fn new(
-        fit: &'a [Signals],
-        held: &'a [Signals],
+        [fit, held]: [&'a [Signals]; 2],
         machine: &Machine,
         base: &Base,
+        knobs: &[Knob],
     ) -> Self {
-        let knobs = Knob::all();
-        let evidence = |runs| Evidence::new(runs, machine, base.clone(), &knobs);
+        let evidence = |runs| Evidence::new(runs, machine, base.clone(), knobs);
         Self { fit: evidence(fit), held: (!held.is_empty()).then(|| evidence(held)) }
     }
 

@@ -7,6 +7,7 @@ use super::evidence::{Base, Left};
 use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
+use super::knob::Knob;
 use super::overlap::own_share;
 use super::signals::Signals;
 use super::verdict::Diagnosis;
@@ -59,7 +60,8 @@ impl Inquiry {
             runs.map(|run| run.signals.clone()).collect()
         };
         let (fit, held) = (of(true), of(false));
-        let docket = |base: &_| Docket::new(&fit, &held, &self.machine, base);
+        let knobs = Knob::of(&self.catalogue);
+        let docket = |base: &_| Docket::new([&fit, &held], &self.machine, base, &knobs);
         tell("driving every block with what was measured", 0.0);
         let first = docket(&self.believed.clone().into());
         let (before, unbent) = (first.left(&[]), first.unbent());

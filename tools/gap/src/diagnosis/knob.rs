@@ -63,8 +63,14 @@ impl Knob {
     /// All that may be turned at once: scoped effects wheel by wheel, the others once.
     #[must_use]
     pub fn all() -> Vec<Self> {
+        Self::of(&CATALOGUE.iter().collect::<Vec<_>>())
+    }
+
+    /// The same of some effects: what is in no catalogue is no tolerance either.
+    #[must_use]
+    pub fn of(effects: &[&'static Effect]) -> Vec<Self> {
         let mut all = Vec::new();
-        for effect in CATALOGUE {
+        for effect in effects.iter().copied() {
             for parameter in effect.parameters {
                 match parameter.slot {
                     Slot::PerWheel(_) => all.extend(

@@ -2,9 +2,10 @@
 
 use rayon::prelude::*;
 use xt28_machine::Machine;
+use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
-use super::evidence::{Base, Evidence, Left};
+use super::evidence::{Base, Belief, Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::search::search;
@@ -109,12 +110,22 @@ impl<'a> Docket<'a> {
 
     /// What is left on each signal of all runs once `fits` are believed.
     pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
+        let (effects, from_s) = self.believing(fits);
+        self.fit.left(Belief { effects: &effects, from_s })
+    }
+
+    /// What each signal leaves that is for `fits` to explain.
+    pub(super) fn apart(&self, fits: &[&Fit]) -> Vec<Left> {
+        let (effects, from_s) = self.believing(fits);
+        self.fit.apart(Belief { effects: &effects, from_s })
+    }
+
+    fn believing(&self, fits: &[&Fit]) -> (Effects, f64) {
         let mut effects = self.fit.base().clone();
         for fit in fits {
             effects = fit.hypothesis.applied(&effects, &fit.values);
         }
-        let from_s = fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max);
-        self.fit.left(super::evidence::Belief { effects: &effects, from_s })
+        (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
     }
 
     fn weighed(&self, fit: Fit) -> Candidate {

@@ -68,8 +68,8 @@ impl Inquiry {
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first().cloned() else {
-            let after = before.clone();
-            return Findings { before, unbent, single, pair: Vec::new(), after };
+            let (apart, after) = (before.clone(), before.clone());
+            return Findings { before, unbent, apart, single, pair: Vec::new(), after };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
@@ -77,11 +77,13 @@ impl Inquiry {
         let left = |one: &Candidate| first.left(&[&one.fit]);
         let explained = pair.first().map(|[one, _]| [before.clone(), left(one)]);
         let pair = explained.map_or(Vec::new(), |first| owned(pair, &first, &beside));
-        let after = match pair.first() {
-            Some([_, second]) => beside.left(&[&second.fit]),
-            None => left(&best),
+        let (apart, after) = match pair.first() {
+            Some([one, second]) => {
+                (first.apart(&[&one.fit, &second.fit]), beside.left(&[&second.fit]))
+            }
+            None => (first.apart(&[&best.fit]), left(&best)),
         };
-        Findings { before, unbent, single, pair, after }
+        Findings { before, unbent, apart, single, pair, after }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

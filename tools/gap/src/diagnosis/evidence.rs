@@ -224,6 +224,15 @@ impl<'a> Evidence<'a> {
         self.left_at(&sums, &DVector::zeros(self.knobs.len()))
     }
 
+    /// What the base leaves on each signal, tolerances at their best beside `belief`: the gap that is
+    /// the belief's to explain. Tolerances at their best without it bend to it, and hide it.
+    #[must_use]
+    pub fn apart<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
+        let step = self.step(&self.sums(belief.into(), &|_| true));
+        let sums = self.sums((&self.base.effects).into(), &|_| false);
+        self.left_at(&sums, &step)
+    }
+
     fn left_at(&self, sums: &[Cow<'_, Sums>], step: &DVector<f64>) -> Vec<Left> {
         let mut all = Vec::new();
         for (watch, squares) in self.watches.iter().zip(self.remaining(sums, step)) {

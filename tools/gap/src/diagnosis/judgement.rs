@@ -52,6 +52,8 @@ pub struct Findings {
     pub before: Vec<Left>,
     /// The same with the tolerances where they are believed to be.
     pub unbent: Vec<Left>,
+    /// The same with the tolerances where they are once the best cause or pair is believed.
+    pub apart: Vec<Left>,
     /// Single causes, best first.
     pub single: Vec<Candidate>,
     /// Pairs of causes, best first; empty where one is enough.
@@ -118,7 +120,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     };
     Diagnosis {
         verdict,
-        places: places(&findings.before),
+        places: places(&findings.apart),
         causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,
@@ -233,6 +235,7 @@ mod tests {
         let findings = Findings {
             before: left(before),
             unbent: left(before),
+            apart: left(before),
             single,
             pair: Vec::new(),
             after: left(after),
@@ -279,6 +282,7 @@ mod tests {
         let findings = Findings {
             before: left(100.0),
             unbent: left(100.0),
+            apart: left(100.0),
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],
             after: left(1.0),

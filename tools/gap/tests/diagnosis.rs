@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use xt28_gap::diagnosis::{Evidence, Generator, Hypothesis, Knob, Signals, search};
 use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Series, Terrain};
 use xt28_machine::{Machine, Wheel};
@@ -162,14 +164,21 @@ fn the_wheel_that_misreads_is_told_by_the_others() {
     assert!((values[0] - 0.93).abs() < 0.015, "{values:?}");
 }
 
+fn random_bools(len: usize, share: f64) -> Vec<bool> {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    (0..len).map(|_| random.random_bool(share)).collect()
+}
+
 /// Commands that are not in the log did not reach the ECUs.
 #[test]
 fn lost_commands_are_counted_and_taken_for_nothing_else() {
     let lose = |series: &mut BTreeMap<Channel, Series>| {
+        // Signals of one frame are lost together.
+        let lost = random_bools(8192, 0.08);
         for (channel, samples) in series {
             if channel.is_command() {
-                let kept = samples.iter().enumerate().filter(|(k, _)| k * 7 % 100 >= 8);
-                *samples = kept.map(|(_, sample)| sample).collect();
+                let kept = samples.iter().zip(&lost).filter(|(_, lost)| !**lost);
+                *samples = kept.map(|(sample, _)| sample).collect();
             }
         }
     };
@@ -178,5 +187,6 @@ fn lost_commands_are_counted_and_taken_for_nothing_else() {
         return;
     };
     assert!(evidence > 50.0, "{evidence}");
-    assert!((values[0] - 0.08).abs() < 0.01, "{values:?}");
+    // Of 3200 commands chance loses half a per cent more or less.
+    assert!((values[0] - 0.08).abs() < 0.015, "{values:?}");
 }

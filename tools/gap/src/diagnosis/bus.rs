@@ -8,6 +8,8 @@
 
 use std::f64::consts::TAU;
 
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use xt28_sim::Effects;
 
 use super::generator::Signal;
@@ -30,8 +32,8 @@ pub(super) struct BusErrors {
 const WINDOW_S: f64 = 1.0;
 /// Period of the two commands, s (the wire contract).
 const PERIOD_S: f64 = 0.01;
-/// Windows of the row on which an expectation stands.
-const ROW: u32 = 40;
+/// Windows of the row on which an expectation stands: chance leaves 0.2 % to a loss of a tenth.
+const ROW: u32 = 200;
 
 /// Errors over a run.
 #[must_use]
@@ -121,22 +123,15 @@ fn expected_times_s(effects: &Effects) -> Vec<f64> {
     let (loss, late) = (effects.bus.frame_loss.share, effects.bus.command_jitter.latest_s);
     let mut before_s = 0.0_f64;
     let frames = (f64::from(ROW) * WINDOW_S / PERIOD_S) as u32;
+    let mut random = ChaCha8Rng::seed_from_u64(0);
     (0..frames)
         .filter_map(|k| {
             // Order is kept: a frame waits for the one before it.
-            before_s = before_s.max((f64::from(k) + 0.5) * PERIOD_S + late * drawn(2 * k));
-            (drawn(2 * k + 1) >= loss).then_some(before_s)
+            before_s =
+                before_s.max((f64::from(k) + 0.5) * PERIOD_S + late * random.random::<f64>());
+            (random.random::<f64>() >= loss).then_some(before_s)
         })
         .collect()
-}
-
-/// The `k`th of a fixed row of draws between 0 and 1, alike likely.
-fn drawn(k: u32) -> f64 {
-    // SplitMix64 (Steele, Lea, Flood, OOPSLA 2014).
-    let mut z = u64::from(k).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 #[cfg(test)]
@@ -168,7 +163,8 @@ mod tests {
     #[test]
     fn lateness_moves_frames_and_loses_none() {
         let row = row(0.0, 0.008);
-        assert!(row.missing.abs() < 1e-9 && row.out_of_place > 0.5, "{row:?}");
+        // The last frame of all may come after the last window.
+        assert!(row.missing.abs() < 1e-3 && row.out_of_place > 0.5, "{row:?}");
         // Two draws, each over 0.8 of a period.
         assert!((row.uneven - 0.8 / 6.0_f64.sqrt()).abs() < 0.05, "{row:?}");
     }

@@ -64,26 +64,22 @@ impl Inquiry {
         let docket = |base: &_| Docket::new([&fit, &held], &self.machine, base, &knobs);
         tell("driving every block with what was measured", 0.0);
         let first = docket(&self.believed.clone().into());
-        let (before, unbent) = (first.left(&[]), first.unbent());
+        let unbent = first.unbent();
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
-        let Some(best) = single.first().cloned() else {
-            let (apart, after) = (before.clone(), before.clone());
-            return Findings { before, unbent, apart, single, pair: Vec::new(), after };
+        let Some(best) = single.first() else {
+            let left = first.left(&[]);
+            return Findings { unbent, apart: left.clone(), single, pair: Vec::new(), after: left };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
-        let left = |one: &Candidate| first.left(&[&one.fit]);
-        let explained = pair.first().map(|[one, _]| [before.clone(), left(one)]);
-        let pair = explained.map_or(Vec::new(), |first| owned(pair, &first, &beside));
+        let (pair, after) = owned(pair, &first, &beside);
         let (apart, after) = match pair.first() {
-            Some([one, second]) => {
-                (first.apart(&[&one.fit, &second.fit]), beside.left(&[&second.fit]))
-            }
-            None => (first.apart(&[&best.fit]), left(&best)),
+            Some([one, second]) => (first.apart(&[&one.fit, &second.fit]), after),
+            None => (first.apart(&[&best.fit]), first.left(&[&best.fit])),
         };
-        Findings { before, unbent, apart, single, pair, after }
+        Findings { unbent, apart, single, pair, after }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.
@@ -129,19 +125,24 @@ impl Inquiry {
     }
 }
 
-/// Pairs by what their seconds explain of their own. The first's signals are `first`, before and after
-/// it is believed; the seconds are `beside` it.
+/// Pairs by what their seconds explain of their own, and what each signal leaves under the best. All
+/// have one first, found by `first`; their seconds were found `beside` it.
 fn owned(
-    mut pairs: Vec<[Candidate; 2]>,
-    [none, first]: &[Vec<Left>; 2],
+    pairs: Vec<[Candidate; 2]>,
+    first: &Docket,
     beside: &Docket,
-) -> Vec<[Candidate; 2]> {
+) -> (Vec<[Candidate; 2]>, Vec<Left>) {
+    let Some([one, _]) = pairs.first() else { return (pairs, Vec::new()) };
+    let (none, explained) = (first.left(&[]), first.left(&[&one.fit]));
     let alone = beside.left(&[]);
-    for [_, second] in &mut pairs {
+    let weigh = |[one, mut second]: [Candidate; 2]| {
         let both = beside.left(&[&second.fit]);
-        second.own_share = own_share([none, first], [&alone, &both]);
-    }
-    pairs.retain(|[_, second]| second.score() > SECOND_MIN);
-    pairs.sort_by(|[_, a], [_, b]| b.score().total_cmp(&a.score()));
-    pairs
+        second.own_share = own_share([&none, &explained], [&alone, &both]);
+        ([one, second], both)
+    };
+    let mut all: Vec<_> = pairs.into_iter().map(weigh).collect();
+    all.retain(|([_, second], _)| second.score() > SECOND_MIN);
+    all.sort_by(|([_, a], _), ([_, b], _)| b.score().total_cmp(&a.score()));
+    let after = all.first().map_or(Vec::new(), |(_, both)| both.clone());
+    (all.into_iter().map(|(pair, _)| pair).collect(), after)
 }

@@ -48,9 +48,8 @@ const PUSHES: &str = "rolling-resistance";
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug)]
 pub struct Findings {
-    /// What each signal leaves while nothing is believed to be wrong, tolerances at their best.
-    pub before: Vec<Left>,
-    /// The same with the tolerances where they are believed to be.
+    /// What each signal leaves while nothing is believed to be wrong, tolerances where they are believed
+    /// to be.
     pub unbent: Vec<Left>,
     /// The same with the tolerances where they are once the best cause or pair is believed.
     pub apart: Vec<Left>,
@@ -161,14 +160,15 @@ fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
     let mut of: BTreeMap<&str, (f64, &Candidate)> = BTreeMap::new();
     for candidate in rank {
         let weight = ((candidate.score() - best) / temperature).exp();
-        let name = candidate.fit.hypothesis.effect.name;
-        of.entry(name).and_modify(|(sum, _)| *sum += weight).or_insert((weight, candidate));
+        of.entry(candidate.name())
+            .and_modify(|(sum, _)| *sum += weight)
+            .or_insert((weight, candidate));
     }
     let total: f64 = of.values().map(|(weight, _)| weight).sum();
     let class = |weight: f64, name: &'static str| {
         let near =
             of.values().filter(|(other, _)| *other > CLASS * weight && weight > CLASS * other);
-        let others = near.map(|(_, c)| c.fit.hypothesis.effect.name).filter(|other| *other != name);
+        let others = near.map(|(_, c)| c.name()).filter(|other| *other != name);
         std::iter::once(name).chain(others).collect()
     };
     let cause = |&(weight, candidate): &(f64, &Candidate)| {
@@ -178,7 +178,7 @@ fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
             scope: fit.hypothesis.scope,
             probability: known * weight / total,
             parameters: estimates(candidate),
-            class: class(weight, fit.hypothesis.effect.name),
+            class: class(weight, candidate.name()),
             begins: (fit.from_s > 0.0)
                 .then(|| Beginning { run: "every run".to_owned(), at_s: fit.from_s }),
             shrink: None,
@@ -233,7 +233,6 @@ mod tests {
 
     fn judged(before: f64, after: f64, single: Vec<Candidate>) -> Diagnosis {
         let findings = Findings {
-            before: left(before),
             unbent: left(before),
             apart: left(before),
             single,
@@ -280,7 +279,6 @@ mod tests {
     fn both_of_a_pair_are_stood_by() {
         let [a, b] = [candidate("arm-delay", 500.0), candidate("payload", 300.0)];
         let findings = Findings {
-            before: left(100.0),
             unbent: left(100.0),
             apart: left(100.0),
             single: vec![a.clone(), b.clone()],

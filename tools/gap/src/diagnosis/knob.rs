@@ -66,11 +66,12 @@ impl Knob {
         Self::of(&CATALOGUE.iter().collect::<Vec<_>>())
     }
 
-    /// The same of some effects: what is in no catalogue is no tolerance either.
+    /// The same of some effects: what is in no catalogue is no tolerance either. Nor is the bus: single
+    /// frames are lost or not, so that residuals have no slope by their share.
     #[must_use]
     pub fn of(effects: &[&'static Effect]) -> Vec<Self> {
         let mut all = Vec::new();
-        for effect in effects.iter().copied() {
+        for effect in effects.iter().copied().filter(|effect| effect.block != Block::Bus) {
             for parameter in effect.parameters {
                 match parameter.slot {
                     Slot::PerWheel(_) => all.extend(

@@ -7,7 +7,7 @@
 use super::evidence::Left;
 
 /// What another law of the first cause may explain of a signal, as a share of what the first does.
-const LAW_SHARE: f64 = 0.3;
+const BENDS_SHARE: f64 = 0.3;
 
 /// Share of the second's gain that is its own. `first` and `second` are what each signal leaves before
 /// and after the cause is believed, the second's beside the first.
@@ -21,7 +21,7 @@ pub(super) fn own_share(first: [&[Left]; 2], second: [&[Left]; 2]) -> f64 {
     if all <= 0.0 {
         return 0.0;
     }
-    let own = |(second, first): (&f64, &f64)| (second - LAW_SHARE * first).max(0.0);
+    let own = |(second, first): (&f64, &f64)| (second - BENDS_SHARE * first).max(0.0);
     second.iter().zip(&first).map(own).sum::<f64>() / all
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts, Terrain, VehicleState};
 
+use crate::diagnosis::driving::PRESSURE_AT_TORQUE_MAX_PA;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Ticks by which a load as logged is late: the ECU's pressure filter keeps 0.94 of its last value.
@@ -12,8 +13,6 @@ const LOAD_LATE: usize = 16;
 const AVERAGED: usize = 5;
 /// Least load of a wheel that stands, N.
 const STANDING_N: f64 = 3_000.0;
-/// What the largest torque adds to a pump's pressure, Pa (assumed, as in the drive's own law).
-const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
 /// Corrections of a stance at most; each squares its error.
 const PASSES: usize = 4;
 /// Ticks from one stance to the next.

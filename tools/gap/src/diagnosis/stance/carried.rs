@@ -3,10 +3,9 @@
 use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::{Effects, Parts};
 
-use super::holds::unflickered;
 use super::instants::{AtWheel, Instant, PRESSURE_FILTER_S};
 use super::layout::Reach;
-use super::motion::lagged;
+use super::motion::{lagged, unflickered};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// One arm as believed: how its sensors read and what hinders it.
@@ -34,15 +33,13 @@ impl<'a> Carrier<'a> {
         parts: &'a Parts,
         wheel: Wheel,
     ) -> Self {
-        let carried_kg =
-            parts.wheel.mass_kg + parts.arms[wheel].body.mass_kg * machine.vehicle.arm_com_share;
         let added = effects.wheels[wheel].rolling_resistance.added;
         Self {
             wheel,
             parts,
             effects,
             area_m2: machine.arms.area_bore_m2,
-            own_n: carried_kg * GRAVITY_M_S2,
+            own_n: own_n(machine, parts, wheel),
             resistance_m: (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m,
             friction: machine.wheels.friction,
             seal_n: seal_friction_n(s, effects, wheel),
@@ -95,6 +92,12 @@ impl<'a> Carrier<'a> {
             load_arm_m: pose.reach_m - below_m * rolls * self.resistance_m,
         }
     }
+}
+
+/// Weight of a wheel and its arm that the pivot does not carry, N.
+pub(super) fn own_n(machine: &Machine, parts: &Parts, wheel: Wheel) -> f64 {
+    let arm_kg = parts.arms[wheel].body.mass_kg * machine.vehicle.arm_com_share;
+    (parts.wheel.mass_kg + arm_kg) * GRAVITY_M_S2
 }
 
 /// Moments about an arm's pivot at one instant.

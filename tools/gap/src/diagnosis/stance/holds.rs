@@ -6,17 +6,16 @@
 //! a little rolling, then slips, and stays when the arms come to rest. Wheel speeds are read too
 //! coarsely for this (7 mm/s at the rim), strokes are not.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
+use super::carried::own_n;
 use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
-use super::motion::lagged;
+use super::motion::{lagged, unflickered};
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// Rolling over which a hold builds up, m (assumed).
 const YIELDS_M: f64 = 0.001;
-/// Half of the stroke by which an arm that stands still may seem to move, m: readings flicker.
-const FLICKER_M: f64 = 0.0004;
 /// Speed of the wheels, all together, at which the machine travels, rad/s (2 cm/s at the rim), and the
 /// samples until it has come to rest after that. A machine that brakes is held by all of its wheels.
 const TRAVELS_RAD_S: f64 = 0.03;
@@ -94,13 +93,13 @@ impl Rim {
     fn new(s: &Signals, machine: &Machine, parts: &Parts, wheel: Wheel) -> Self {
         let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
         let arm = &parts.arms[wheel];
-        let own_kg = parts.wheel.mass_kg + arm.body.mass_kg * machine.vehicle.arm_com_share;
+        let own_n = own_n(machine, parts, wheel);
         let slips_m = machine.wheels.friction * parts.radius_m;
         let stroke_m = late(unflickered(&s.smooth_stroke_m[wheel]));
         let loads_n = s.cylinder_load_n[wheel].iter();
         let steps = stroke_m.iter().zip(loads_n).step_by(STRIDE).map(|(stroke_m, load_n)| {
             let pose = parts.linkage.at_stroke(*stroke_m);
-            let normal_n = own_kg * GRAVITY_M_S2 + load_n * pose.lever_m / pose.reach_m;
+            let normal_n = own_n + load_n * pose.lever_m / pose.reach_m;
             let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
             (turned_m, slips_m * normal_n.max(0.0))
         });
@@ -108,16 +107,6 @@ impl Rim {
         let pushed_nm = late(pump_torque_nm(s, machine, wheel));
         Self { swing_m, grip_nm, pushed_nm: pushed_nm.into_iter().step_by(STRIDE).collect() }
     }
-}
-
-/// Strokes that move only where the readings leave the band about them.
-pub(super) fn unflickered(stroke_m: &Samples) -> Samples {
-    let mut at_m = stroke_m.first().copied().unwrap_or_default();
-    let follow = |reading_m: &f64| {
-        at_m = at_m.clamp(reading_m - FLICKER_M, reading_m + FLICKER_M);
-        at_m
-    };
-    stroke_m.iter().map(follow).collect()
 }
 
 /// Shares nearest to `wanted`, all less by the same, whose torques come to `pushed_nm`.

@@ -1,8 +1,9 @@
 //! The instants at which a machine's stance is judged, with all that a log says of each.
 
-use xt28_machine::{Machine, PerWheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 
 use super::motion::{Motion, lagged};
+use crate::diagnosis::driving::PRESSURE_AT_TORQUE_MAX_PA;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time constant of the filter through which the ECU sees pressures, s: 0.94088 a tick (facts 3.2).
@@ -14,8 +15,6 @@ const FADES_RAD_S: f64 = 0.07;
 /// Stroke rate at which an instant is twice as doubtful as one at rest, m/s, and how long that lasts, s.
 const DOUBT_M_S: f64 = 0.02;
 const DOUBT_S: f64 = 1.0;
-/// Pump pressure at the largest wheel torque, Pa.
-const FULL_PRESSURE_PA: f64 = 350.0e5;
 
 /// What a log says of one instant. Strokes, joints, speeds and angles are taken through the filter
 /// that makes the loads late, so that they are all of one moment.
@@ -85,11 +84,7 @@ pub(super) fn held_between(values: &[f64], len: usize) -> Samples {
     (0..len / 10).map(|k| values.get(k * 10 / STRIDE).copied().unwrap_or(f64::NAN)).collect()
 }
 
-fn wheel_samples(
-    s: &Signals,
-    machine: &Machine,
-    wheel: xt28_machine::Wheel,
-) -> impl Fn(usize) -> AtWheel {
+fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize) -> AtWheel {
     let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
     let stroke_m = late(s.stroke_m[wheel].clone());
     let load_n = s.cylinder_load_n[wheel].clone();
@@ -105,15 +100,11 @@ fn wheel_samples(
 }
 
 /// Torque of the wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
-pub(super) fn pump_torque_nm(
-    s: &Signals,
-    machine: &Machine,
-    wheel: xt28_machine::Wheel,
-) -> Samples {
+pub(super) fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: Wheel) -> Samples {
     let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
     let [back, forward] = if first { [0, 1] } else { [2, 3] };
     let (back, forward) = (&s.pump_pressure_pa[back], &s.pump_pressure_pa[forward]);
-    let full = machine.wheels.torque_max_nm / FULL_PRESSURE_PA;
+    let full = machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
 }
 

@@ -17,6 +17,8 @@ const CALM_M_S2: f64 = 0.1;
 const CARRYING_N: f64 = 5_000.0;
 /// Samples until the machine has stopped rocking after that: one second.
 const ROCKING: usize = 100;
+/// Half of the stroke by which an arm that stands still may seem to move, m: readings flicker.
+const FLICKER_M: f64 = 0.0004;
 
 /// Motion over the ground, a hundred samples a second.
 pub(super) struct Motion {
@@ -108,4 +110,14 @@ pub(super) fn lagged(samples: impl Iterator<Item = f64>, time_constant_s: f64) -
     let mut lag: Option<Lag> = None;
     let step = |value| lag.get_or_insert(Lag::new(value)).step(value, time_constant_s, DT_S);
     samples.map(step).collect()
+}
+
+/// Strokes that move only where the readings leave the band about them.
+pub(super) fn unflickered(stroke_m: &Samples) -> Samples {
+    let mut at_m = stroke_m.first().copied().unwrap_or_default();
+    let follow = |reading_m: &f64| {
+        at_m = at_m.clamp(reading_m - FLICKER_M, reading_m + FLICKER_M);
+        at_m
+    };
+    stroke_m.iter().map(follow).collect()
 }

@@ -26,7 +26,7 @@ use self::contact::{Body, Contact, Hold};
 use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
-use self::touch::{CONTACTS_MAX, Search};
+use self::touch::{CONTACTS_MAX, Search, patch};
 use self::tree::Tree;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
@@ -100,7 +100,7 @@ impl Bodies for ReducedBodies {
         self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
         let balance = self.balance(&pose, &inertias, loads, dt_s);
         let patches: [_; 6] =
-            core::array::from_fn(|i| self.tree.patch(i, &pose, &self.state, dt_s));
+            core::array::from_fn(|i| patch(&self.tree, i, (&pose, &self.state), dt_s));
         self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
         for (i, patch) in patches.iter().enumerate() {
             let own = contacts.iter().filter(|contact| contact.body == Body::Wheel(i));

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::contact::{Body, Contact, ContactLaw, Grip};
 use super::ground::Touches;
-use super::patch::Patch;
-use super::pose::{Pose, State};
+use super::patch::{Patch, Rolling};
+use super::pose::{Pose, State, WHEELS};
 use super::spatial::{Spatial, angular, velocity_at};
 use super::tree::Tree;
 use crate::{HullBall, Terrain};
@@ -65,7 +65,7 @@ impl Search {
             let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &state.rate);
             let speed_m_s = velocity_at(&arm, centre).length();
             let ball = Ball { body: Body::Wheel(i), centre, radius_m: tree.radius_m, speed_m_s };
-            let patch = tree.patch(i, pose, state, dt_s);
+            let patch = patch(tree, i, (pose, state), dt_s);
             self.add(&ball, state.position, &tree.laws[i], Some(&patch), dt_s, found);
         }
         for (i, hull) in tree.hulls.iter().enumerate() {
@@ -134,6 +134,17 @@ impl Search {
             }
         }
     }
+}
+
+/// The patch of wheel `i` at the start of a step.
+pub(super) fn patch(tree: &Tree, i: usize, (pose, state): (&Pose, &State), dt_s: f64) -> Patch {
+    let wheel = Rolling {
+        bristle_m: state.bristle_m[i],
+        axle: pose.arm[i].axle,
+        rim_m_s: state.rate[WHEELS + i] * tree.radius_m,
+        wheel_kg: tree.arms[i].wheel_kg,
+    };
+    Patch::new(&tree.tyres[i], &wheel, dt_s)
 }
 
 /// How far from a ball ground can be and still make a force within the step, m: a damper acts from

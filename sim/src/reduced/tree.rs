@@ -4,8 +4,6 @@ use glam::{DMat3, DVec3};
 use xt28_machine::Wheel;
 
 use super::contact::ContactLaw;
-use super::patch::{Patch, Rolling};
-use super::pose::{Pose, State, WHEELS};
 use crate::{HullBall, Part, Parts, RollHinge, TyrePart};
 
 /// Everything about the bodies that does not move. Frames' coordinates are the machine file's.
@@ -19,7 +17,7 @@ pub(super) struct Tree {
     pub(super) arms: [Arm; 6],
     /// The tyres' normal forces and friction.
     pub(super) laws: [ContactLaw; 6],
-    tyres: [TyrePart; 6],
+    pub(super) tyres: [TyrePart; 6],
     pub(super) radius_m: f64,
     /// Balls of each frame's outside.
     pub(super) hulls: [Vec<HullBall>; 3],
@@ -81,17 +79,6 @@ impl Tree {
             gravity: parts.gravity_m_s2.into(),
             mass_kg: on_frames + on_arms,
         }
-    }
-
-    /// The patch of wheel `i` at the start of a step.
-    pub(super) fn patch(&self, i: usize, pose: &Pose, state: &State, dt_s: f64) -> Patch {
-        let wheel = Rolling {
-            bristle_m: state.bristle_m[i],
-            axle: pose.arm[i].axle,
-            rim_m_s: state.rate[WHEELS + i] * self.radius_m,
-            wheel_kg: self.arms[i].wheel_kg,
-        };
-        Patch::new(&self.tyres[i], &wheel, dt_s)
     }
 
     /// The frame that carries arm `i`.

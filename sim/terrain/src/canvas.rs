@@ -64,6 +64,29 @@ impl Canvas {
     }
 }
 
+impl Grid {
+    /// A grid over `extent`, sampled from a function; a height that is not finite becomes 0.
+    ///
+    /// # Panics
+    /// [`Extent::check`] refuses the extent.
+    #[must_use]
+    pub fn from_fn(extent: Extent, height_m: impl Fn(f64, f64) -> f64) -> Self {
+        Self::on_slope(extent, [0.0; 2], height_m)
+    }
+
+    /// As [`Self::from_fn`], on ground that goes on rising by `beyond` (along x, along y; m/m)
+    /// outside the extent. The function gives whole heights, the slope included.
+    ///
+    /// # Panics
+    /// [`Extent::check`] refuses the extent.
+    #[must_use]
+    pub fn on_slope(extent: Extent, beyond: [f64; 2], height_m: impl Fn(f64, f64) -> f64) -> Self {
+        let mut canvas = Canvas::new(extent);
+        canvas.add(height_m);
+        canvas.into_grid(beyond)
+    }
+}
+
 /// Position of a column or row, m: the decimal number nearest to it, as people write it.
 #[allow(clippy::cast_precision_loss)]
 fn position(first: i64, index: usize) -> f64 {

@@ -2,9 +2,6 @@
 
 use std::fmt;
 
-use crate::Extent;
-use crate::canvas::Canvas;
-
 /// Spacing of the grid, m (paper 3.1).
 pub const SPACING_M: f64 = 0.1;
 /// Grid points to a metre. Positions are integers over this, so that 1.9 m is the number 1.9.
@@ -43,27 +40,6 @@ pub(crate) struct Block {
 }
 
 impl Grid {
-    /// A grid over `extent`, sampled from a function; a height that is not finite becomes 0.
-    ///
-    /// # Panics
-    /// [`Extent::check`] refuses the extent.
-    #[must_use]
-    pub fn from_fn(extent: Extent, height_m: impl Fn(f64, f64) -> f64) -> Self {
-        Self::on_slope(extent, [0.0; 2], height_m)
-    }
-
-    /// As [`Self::from_fn`], on ground that goes on rising by `beyond` (along x, along y; m/m)
-    /// outside the extent. The function gives whole heights, the slope included.
-    ///
-    /// # Panics
-    /// [`Extent::check`] refuses the extent.
-    #[must_use]
-    pub fn on_slope(extent: Extent, beyond: [f64; 2], height_m: impl Fn(f64, f64) -> f64) -> Self {
-        let mut canvas = Canvas::new(extent);
-        canvas.add(height_m);
-        canvas.into_grid(beyond)
-    }
-
     /// From heights row by row; `first` is the first point in grid steps from the origin.
     pub(crate) fn new(
         first: [i64; 2],
@@ -241,6 +217,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::Extent;
 
     const SMALL: Extent = Extent { x_m: [-1.0, 2.0], y_m: [-0.5, 1.5] };
 

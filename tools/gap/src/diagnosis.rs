@@ -8,49 +8,37 @@
 //! | what ordinary tolerances explain | [`Knob`]s, all at once, in [`Evidence`] |
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
-mod arms;
-mod axles;
-mod bus;
+mod belief;
 mod candidates;
-mod controllers;
-mod descent;
 pub mod details;
 mod diagnose;
-mod driving;
 mod evidence;
 mod excitation;
+mod floor;
 mod generator;
 mod how_far;
 mod hypothesis;
 mod inquiry;
-mod joints;
+mod instant;
 mod judgement;
 mod knob;
-mod loads;
 mod next_drive;
 mod overlap;
-mod places;
-mod position_control;
-mod pump;
 mod regime;
-mod rolling;
-mod scrub;
 mod search;
 mod signals;
-mod stack;
-mod stance;
 mod stands;
-mod travel;
 mod verdict;
-mod watch;
 mod wheel_order;
 
+pub use belief::{Base, Belief};
 pub use candidates::Candidate;
 pub use details::Details;
 pub use diagnose::Progress;
-pub use evidence::{Base, Belief, Evidence, Left};
+pub use evidence::{Evidence, Left};
 pub use excitation::not_testable;
-pub use generator::{Floor, Generator, Residual, Signal};
+pub use floor::{Floor, Signal};
+pub use generator::{Generator, Residual};
 pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};

@@ -5,7 +5,9 @@
 
 mod bench;
 mod guest;
+mod harness;
 mod second_engine;
+mod tally;
 mod test;
 mod tidy;
 mod vcan;

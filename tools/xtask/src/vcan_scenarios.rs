@@ -8,8 +8,8 @@ use cargo_metadata::{Artifact, Message};
 use clap::Args;
 
 use crate::guest::Guest;
-use crate::test::tally::Tally;
-use crate::test::{Report, harness, on_ci};
+use crate::harness::{Report, harness, on_ci};
+use crate::tally::Tally;
 use crate::vcan::Cache;
 use crate::workspace::{Outcome, Workspace};
 

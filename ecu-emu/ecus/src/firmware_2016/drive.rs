@@ -10,6 +10,7 @@ mod sensing;
 mod sequence;
 mod slip;
 mod steering;
+mod steering_valve;
 mod wheel_speed;
 
 use xt28_dbc::Frame;

@@ -5,7 +5,8 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
-use super::evidence::{Base, Belief, Evidence, Left};
+use super::belief::{Base, Belief};
+use super::evidence::{Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::search::search;
@@ -118,6 +119,12 @@ impl<'a> Docket<'a> {
     pub(super) fn apart(&self, fits: &[&Fit]) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
         self.fit.apart(Belief { effects: &effects, from_s })
+    }
+
+    /// Where the tolerances go once `fits` are believed, each by how many of its own.
+    pub(super) fn shifts(&self, fits: &[&Fit]) -> Vec<(Knob, f64)> {
+        let (effects, from_s) = self.believing(fits);
+        self.fit.shifts(Belief { effects: &effects, from_s })
     }
 
     fn believing(&self, fits: &[&Fit]) -> (Effects, f64) {

@@ -2,8 +2,9 @@
 
 use xt28_sim::effects::Effect;
 
+use super::belief::Base;
 use super::candidates::{Candidate, Docket};
-use super::evidence::{Base, Left};
+use super::evidence::Left;
 use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
@@ -68,18 +69,23 @@ impl Inquiry {
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first() else {
-            let left = first.left(&[]);
-            return Findings { unbent, apart: left.clone(), single, pair: Vec::new(), after: left };
+            let (apart, after, shifts) = (first.left(&[]), first.left(&[]), first.shifts(&[]));
+            return Findings { unbent, apart, single, pair: Vec::new(), after, shifts };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
         let (pair, after) = owned(pair, &first, &beside);
-        let (apart, after) = match pair.first() {
-            Some([one, second]) => (first.apart(&[&one.fit, &second.fit]), after),
-            None => (first.apart(&[&best.fit]), first.left(&[&best.fit])),
+        let (apart, after, shifts) = match pair.first() {
+            Some([one, second]) => {
+                (first.apart(&[&one.fit, &second.fit]), after, beside.shifts(&[&second.fit]))
+            }
+            None => {
+                let best = [&best.fit];
+                (first.apart(&best), first.left(&best), first.shifts(&best))
+            }
         };
-        Findings { unbent, apart, single, pair, after }
+        Findings { unbent, apart, single, pair, after, shifts }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

@@ -8,6 +8,9 @@
 //! `N + (N + nu) ln((RSS + nu) / (N + nu))` beyond: a block that nothing explains raises its own scale
 //! and does not drown the others.
 
+mod stack;
+mod watch;
+
 use std::borrow::Cow;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -15,12 +18,14 @@ use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::generator::{Generator, Signal};
+use super::belief::{Base, Belief};
+use super::floor::Signal;
+use super::generator::Generator;
 use super::knob::Knob;
-use super::search::Memory;
 use super::signals::Signals;
-use super::stack::Group;
-use super::watch::{Sums, Watch};
+use stack::Group;
+pub(super) use watch::Memory;
+use watch::{Sums, Watch};
 
 /// How many samples one's belief in a floor is worth.
 const SCALE_SAMPLES: f64 = 10.0;
@@ -41,21 +46,6 @@ pub struct Evidence<'a> {
     knobs: Vec<Knob>,
 }
 
-/// What is believed already, and from when on in every run; what was before is not looked at.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Base {
-    /// The effects.
-    pub effects: Effects,
-    /// Since when, s.
-    pub since_s: f64,
-}
-
-impl From<Effects> for Base {
-    fn from(effects: Effects) -> Self {
-        Self { effects, since_s: 0.0 }
-    }
-}
-
 /// What one signal leaves.
 #[derive(Clone, Copy, Debug)]
 pub struct Left {
@@ -73,21 +63,6 @@ impl Left {
     /// What the signal costs, nats.
     pub(super) fn cost(&self) -> f64 {
         0.5 * cost_of_squares(self.square * self.samples, self.samples)
-    }
-}
-
-/// Something to believe, and from when on in every run, s.
-#[derive(Clone, Copy, Debug)]
-pub struct Belief<'e> {
-    /// The effects.
-    pub effects: &'e Effects,
-    /// Before this instant of every run the base holds.
-    pub from_s: f64,
-}
-
-impl<'e> From<&'e Effects> for Belief<'e> {
-    fn from(effects: &'e Effects) -> Self {
-        Self { effects, from_s: 0.0 }
     }
 }
 
@@ -262,10 +237,10 @@ impl<'a> Evidence<'a> {
         self.watches.iter().map(gap).collect()
     }
 
-    /// Where all knobs at once come to lie, each by how many of its tolerances from the base.
+    /// Where all knobs at once come to lie beside `belief`, each by how many of its tolerances.
     #[must_use]
-    pub fn shifts(&self) -> Vec<(Knob, f64)> {
-        let step = self.step(&self.sums((&self.base.effects).into(), &|_| false));
+    pub fn shifts<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<(Knob, f64)> {
+        let step = self.step(&self.sums(belief.into(), &|_| true));
         self.knobs.iter().copied().zip(step.iter().copied()).collect()
     }
 

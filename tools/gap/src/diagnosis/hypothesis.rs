@@ -1,11 +1,14 @@
 //! One effect at one scope, fitted to the logs.
 
+mod descent;
+
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
 
-use super::descent::descend;
-use super::evidence::{Belief, Evidence};
+use super::belief::Belief;
+use super::evidence::Evidence;
 use super::generator::Generator;
+use descent::descend;
 
 /// Beginnings that an effect may have, as many as can be told apart in a run.
 const BEGINNINGS: f64 = 12.0;

@@ -5,6 +5,8 @@
 //! our own making (`docs/diagnosis.md`): is there anything beyond tolerances; is it in the catalogue;
 //! which of the catalogue is it.
 
+mod places;
+
 use std::collections::BTreeMap;
 
 use super::candidates::Candidate;
@@ -13,8 +15,9 @@ use super::excitation::not_testable;
 use super::generator::Generator;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
-use super::places::places;
+use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
+use places::places;
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
 const SOMETHING: [f64; 2] = [18.0, 4.0];
@@ -59,6 +62,8 @@ pub struct Findings {
     pub pair: Vec<[Candidate; 2]>,
     /// What each signal leaves under the best cause or pair.
     pub after: Vec<Left>,
+    /// Where the tolerances go beside the best cause or pair, each by how many of its own.
+    pub shifts: Vec<(Knob, f64)>,
 }
 
 impl Findings {
@@ -213,7 +218,8 @@ mod tests {
     use xt28_machine::{Machine, Wheel};
     use xt28_sim::effects::{Scope, find};
 
-    use super::super::generator::{Generator, Signal};
+    use super::super::floor::Signal;
+    use super::super::generator::Generator;
     use super::super::hypothesis::Hypothesis;
     use super::*;
 
@@ -238,6 +244,7 @@ mod tests {
             single,
             pair: Vec::new(),
             after: left(after),
+            shifts: Vec::new(),
         };
         judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
     }
@@ -284,6 +291,7 @@ mod tests {
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],
             after: left(1.0),
+            shifts: Vec::new(),
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
         let stood: Vec<&str> = diagnosis

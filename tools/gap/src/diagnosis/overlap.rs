@@ -28,7 +28,8 @@ pub(super) fn own_share(first: [&[Left]; 2], second: [&[Left]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::generator::{Generator, Signal};
+    use crate::diagnosis::floor::Signal;
+    use crate::diagnosis::generator::Generator;
 
     fn left(squares: [f64; 2]) -> Vec<Left> {
         let signals = [Signal::Stroke, Signal::Weight];

@@ -1,14 +1,11 @@
 //! The hypotheses worth a fit: all are looked at on a coarse grid, the promising ones followed.
 
-use std::collections::BTreeMap;
-
 use rayon::prelude::*;
 use xt28_sim::effects::{Effect, Parameter};
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Memory};
 use super::generator::Generator;
 use super::hypothesis::{Fit, Hypothesis};
-use super::watch::Sums;
 
 /// Grid of the first look, in tolerances from neutral.
 const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
@@ -29,9 +26,6 @@ const STARTS: usize = 2;
 const LEADING: usize = 6;
 /// A start must gain this much, nats.
 const GAIN_MIN: f64 = 0.5;
-
-/// Sums of generators that look at one wheel alone, one for each instant, by wheel and values.
-pub(super) type Memory = BTreeMap<(Generator, Vec<u64>), Vec<Sums>>;
 
 /// A hypothesis with the best values of the first look.
 #[derive(Clone, Debug)]

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use xt28_ecus::pins;
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
-use super::stance::{Instant, instants};
+use super::instant::Instant;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 
 /// Time series by channel, as logs and replays have them.
@@ -187,8 +187,8 @@ impl Signals {
 
     /// The instants at which the stance is judged. They need of a machine only where its axles and
     /// joints are, how large its wheels are and which pump drives which; no knob turns those.
-    pub(super) fn instants(&self, machine: &Machine) -> &[Instant] {
-        self.instants.get_or_init(|| instants(self, machine))
+    pub(super) fn instants(&self, first: impl FnOnce() -> Vec<Instant>) -> &[Instant] {
+        self.instants.get_or_init(first)
     }
 
     /// Length of the run, s.

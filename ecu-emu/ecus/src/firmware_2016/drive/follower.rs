@@ -1,6 +1,6 @@
 //! The follower: PI that takes one joint to the other's angle, awake above half a degree (facts 4.6).
 
-use super::steering::{REAR_MA, REST_MA, written};
+use super::steering_valve::{REAR_MA, REST_MA, written};
 use crate::firmware_2016::Quirks;
 use crate::firmware_2016::whole::cut;
 use crate::life::PERIOD_S;

@@ -2,13 +2,9 @@
 
 use super::follower::Follower;
 use super::sequence::DriveState;
+use super::steering_valve::{FULL_MA, REAR_MA, REST_MA, written};
 use crate::firmware_2016::Quirks;
 
-/// Valve current at rest, and at full joystick on a valve of its own and on the rear one when both
-/// steer, mA.
-pub(super) const REST_MA: i32 = 415;
-const FULL_MA: i32 = 730;
-pub(super) const REAR_MA: i32 = 500;
 /// Between these the mini-joystick is at rest; its ends, mV.
 const REST_MV: [i32; 2] = [2284, 2684];
 const ENDS_MV: [i32; 2] = [466, 4230];
@@ -121,17 +117,6 @@ pub(super) fn joystick(mv: i32, chair_front: bool) -> i32 {
 /// Currents `[A, B]`, mA, for a joystick that gives `full_ma` at its end: left by A.
 fn rate_ma(joystick: i32, full_ma: i32) -> [i32; 2] {
     written(joystick.abs() * (full_ma - REST_MA) / FULL, joystick < 0)
-}
-
-/// Currents for so much above the valve's rest; at rest none flows.
-pub(super) const fn written(above_ma: i32, a: bool) -> [i32; 2] {
-    if above_ma <= 0 {
-        [0; 2]
-    } else if a {
-        [REST_MA + above_ma, 0]
-    } else {
-        [0, REST_MA + above_ma]
-    }
 }
 
 #[cfg(test)]

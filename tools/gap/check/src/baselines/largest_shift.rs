@@ -21,7 +21,7 @@ pub(super) fn reply(inquiry: &Inquiry) -> Reply {
     let knobs: Vec<Knob> = Knob::all().into_iter().filter(known).collect();
     let evidence = Evidence::new(&runs, &inquiry.machine, inquiry.believed.clone(), &knobs);
     let mut shifts: BTreeMap<&str, (&'static Effect, PerWheel<f64>)> = BTreeMap::new();
-    for (knob, shift) in evidence.shifts() {
+    for (knob, shift) in evidence.shifts(&inquiry.believed) {
         if let Knob::Effect(effect, _, scope) = knob {
             let (_, wheels) = shifts.entry(effect.name).or_insert((effect, PerWheel::splat(0.0)));
             for wheel in scope.wheels() {

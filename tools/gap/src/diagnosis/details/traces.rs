@@ -1,7 +1,8 @@
 //! A few seconds-by-seconds pictures of where the gap is largest, before and after.
 
 use super::{Pair, STEP_S, file_name, rms};
-use crate::diagnosis::generator::{Generator, Signal};
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::Generator;
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{Samples, Signals};
 

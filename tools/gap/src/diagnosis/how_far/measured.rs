@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts, Terrain, VehicleState};
 
-use crate::diagnosis::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use crate::diagnosis::generator::PRESSURE_AT_TORQUE_MAX_PA;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Ticks by which a load as logged is late: the ECU's pressure filter keeps 0.94 of its last value.

@@ -9,7 +9,8 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 
 use super::squares::{BLOCK, Squares};
-use crate::diagnosis::generator::{Generator, Residual, Signal};
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::{Generator, Residual};
 use crate::diagnosis::signals::Signals;
 
 /// Time between two samples of a residual, s.

@@ -3,8 +3,9 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::generator::{Generator, Signal};
-use super::signals::Signals;
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::Generator;
+use crate::diagnosis::signals::Signals;
 
 /// Time between two samples of a residual, s.
 const STEP_S: f64 = 0.1;

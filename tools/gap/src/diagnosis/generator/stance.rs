@@ -11,10 +11,10 @@ mod plane;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 use xt28_sim::{Effects, Parts, Terrain};
 
-use super::signals::{Samples, Signals};
+use crate::diagnosis::instant::Instant;
+use crate::diagnosis::signals::{Samples, Signals};
 use carried::Carrier;
 use holds::Holds;
-pub(super) use instants::{Instant, instants};
 use layout::{Layout, Reach};
 use plane::{Foot, Plane};
 
@@ -69,7 +69,8 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
         judge(instant, &arms, &parts, machine, effects).unwrap_or(UNKNOWN)
     };
-    let errors: Vec<Error> = s.instants(machine).iter().map(judge).collect();
+    let errors: Vec<Error> =
+        s.instants(|| instants::instants(s, machine)).iter().map(judge).collect();
     let of = |value: &dyn Fn(&Error) -> f64| {
         instants::held_between(&errors.iter().map(value).collect::<Vec<_>>(), s.len)
     };

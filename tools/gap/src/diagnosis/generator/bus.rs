@@ -12,8 +12,8 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use xt28_sim::Effects;
 
-use super::generator::Signal;
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// What is expected of the row of commands less what was seen, mean of arms' and drive's; smaller by as
 /// much as chance is larger than the floor.

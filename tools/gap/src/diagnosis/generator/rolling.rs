@@ -9,7 +9,7 @@ use xt28_sim::Effects;
 
 use super::axles::Axles;
 use super::driving::PRESSURE_AT_TORQUE_MAX_PA;
-use super::signals::{Samples, Signals};
+use crate::diagnosis::signals::{Samples, Signals};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
 #[derive(Clone, Debug)]

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::effects::{Block, Scope};
 
-use super::evidence::Left;
-use super::generator::Signal;
-use super::verdict::Place;
+use crate::diagnosis::evidence::Left;
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::verdict::Place;
 
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
 const ALIKE: f64 = 0.4;

@@ -1,49 +1,16 @@
-//! Arm hydraulics on measured inputs: the valve's opening and the cylinder's load in, its stroke out.
+//! One arm's valve and oil, driven with what was measured.
 
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::{ArmEffects, SealStiction, WheelEffects};
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
-use super::pump;
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time over which the block forgets where it parted from the machine, s. Long enough that a creep of
 /// a tenth of a millimetre a second stands out over a run, short enough that what a law has wrong by a
 /// few per cent does not add up to more than the fault itself.
 const FORGET_S: f64 = 2.0;
-/// Stroke rate over which friction changes its sign, m/s: what 0.2 s of a reading in whole
-/// millimetres tell apart from rest.
-const SLIDING_M_S: f64 = 0.004;
-
-/// Stroke that the block predicts less the stroke measured, m, for one arm over a whole run.
-///
-/// The block is driven with the opening that the ECU asked for, the load and the motion that were
-/// measured. It says which load the oil then makes and the ECU's filter shows; where that is another
-/// than the one read, the cylinder would stand elsewhere by what its lock gives way for the difference.
-#[must_use]
-pub(super) fn stroke_error_m(
-    signals: &Signals,
-    machine: &Machine,
-    effects: &Effects,
-    wheel: Wheel,
-) -> Samples {
-    let drive = ArmDrive::new(signals, machine, effects, wheel);
-    let share = pump::flow_share(signals, machine, effects);
-    let (errors, softness) = drive.stroke_errors_m(&share);
-    let stiction = &effects.arms[wheel].stiction;
-    if stiction.coulomb_n + stiction.stribeck_n == 0.0 {
-        return errors;
-    }
-    let seen_n = seen_friction_n(stiction, &signals.stroke_rate_m_s[wheel]);
-    let each = errors.iter().zip(softness.iter().zip(&seen_n));
-    let with: Samples = each.map(|(error_m, (m_n, n))| error_m - m_n * n).collect();
-    // Where the pressures are taken, the seals are among the load or they are not; nobody knows.
-    let square =
-        |errors: &Samples| -> f64 { errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum() };
-    if square(&with) < square(&errors) { with } else { errors }
-}
-
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
     signals: &'a Signals,
@@ -62,7 +29,7 @@ impl<'a> ArmDrive<'a> {
         effects: &Effects,
         wheel: Wheel,
     ) -> Self {
-        // The seals are judged apart: see `seen_friction_n`.
+        // The seals are judged apart.
         let smooth = ArmEffects { stiction: SealStiction::default(), ..effects.arms[wheel] };
         Self {
             signals,
@@ -80,13 +47,13 @@ impl<'a> ArmDrive<'a> {
         (0..self.signals.len).map(|i| self.arm.open(&mut state, &self.input(i), DT_S)).collect()
     }
 
-    /// See [`stroke_error_m`], without the friction of the seals; and how far the sensor's reading
-    /// goes for a newton, m/N. `share` is what the pump gives of what is asked, by sample; all where
+    /// Stroke predicted less the stroke measured, m, without the friction of the seals; and how far the
+    /// sensor's reading goes for a newton, m/N. `share` is what the pump gives of what is asked, by sample; all where
     /// there are none.
     ///
     /// A force counts as the distance that this very arm gives way for it: were it the nominal arm's,
     /// a softer one would seem to be measured better.
-    fn stroke_errors_m(&self, share: &[f64]) -> (Samples, Samples) {
+    pub(super) fn stroke_errors_m(&self, share: &[f64]) -> (Samples, Samples) {
         let (is_new, s) = (&self.signals.load_is_new[self.wheel], &self.sensors);
         let mut state = self.started();
         let mut seen_n = self.loads.reading_n[0];
@@ -143,27 +110,4 @@ impl<'a> ArmDrive<'a> {
         let s = &self.sensors;
         s.pressure_scale.factor * load_n + s.pressure_bias.bias_pa * self.area_bore_m2
     }
-}
-
-/// Friction of seals that slide as measured, as far as a load that has it in shows it.
-///
-/// By the sign of the rate and no more: what rubber remembers at rest cannot be driven with a reading
-/// in whole millimetres, it would follow any error.
-fn seen_friction_n(stiction: &SealStiction, rate_m_s: &Samples) -> Samples {
-    let mut seen_n = 0.0;
-    let step = |rate_m_s: &f64| {
-        let sign = (rate_m_s / SLIDING_M_S).tanh();
-        seen_n = KEPT * seen_n + (1.0 - KEPT) * sign * stiction.sliding_n(*rate_m_s);
-        seen_n
-    };
-    rate_m_s.iter().map(step).collect()
-}
-
-/// Speeds that all arms' valves ask, m/s.
-pub(super) fn all_speeds_asked_m_s(
-    signals: &Signals,
-    machine: &Machine,
-    effects: &Effects,
-) -> PerWheel<Samples> {
-    PerWheel::from_fn(|w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s())
 }

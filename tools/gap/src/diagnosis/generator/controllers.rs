@@ -3,7 +3,7 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
 const STEER_WINDUP_DEG_S: f64 = 40.0;

@@ -1,11 +1,11 @@
 //! The pump that arms and steering share, on measured inputs: what it gives of what all valves ask.
 
-use xt28_machine::{Machine, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::PumpFlowLimit;
 use xt28_sim::{Effects, FlowSharing, Steering};
 
-use super::arms;
-use super::signals::{DT_S, Samples, Signals};
+use super::arm_drive::ArmDrive;
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Share of its speed that every consumer gets, 0 to 1, by sample; none for a pump that never runs
 /// short.
@@ -16,7 +16,8 @@ pub(super) fn flow_share(signals: &Signals, machine: &Machine, effects: &Effects
     let flow = FlowSharing::new(machine, effects.pump_flow);
     let steering = Steering::new(machine, &effects.steering);
     let mut joints = [steering.straight(DT_S), steering.straight(DT_S)];
-    let arms = arms::all_speeds_asked_m_s(signals, machine, effects);
+    let asked = |w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s();
+    let arms = PerWheel::from_fn(asked);
     let share = |i: usize| {
         let arms_m3_s: f64 = Wheel::ALL.iter().map(|&w| flow.cylinder_m3_s(arms[w][i])).sum();
         let joint = |j: usize| {

@@ -4,7 +4,7 @@ use xt28_machine::{Machine, PerWheel};
 use xt28_sim::Effects;
 
 use super::rolling::rolling_errors;
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Errors of rolling over a run; `NaN` where nothing can be said.
 #[derive(Clone, Debug, Default)]

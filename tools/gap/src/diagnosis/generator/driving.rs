@@ -9,7 +9,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 use xt28_sim::{Drive, DriveInput, Effects, Terrain};
 
-use super::signals::{DT_S, Samples, Signals, moving_mean};
+use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the block did less what was measured.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +27,7 @@ const DRAWN_S: f64 = 0.25;
 /// The frames pitch on their arms as the machine speeds up: forces balance over this time only, s.
 const FORCE_S: f64 = 2.0;
 /// Pressure for the largest torque, Pa (the machine's conventions).
-pub(super) const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
+pub(in crate::diagnosis) const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
 /// Speed over which rolling resistance changes its sign, rad/s (assumed).
 const TURNS_RAD_S: f64 = 0.05;
 

@@ -9,9 +9,9 @@ use xt28_machine::Machine;
 use xt28_sim::{Effects, Steering};
 
 use super::controllers::steer_opening_asked;
-use super::generator::Signal;
 use super::scrub::scrub_nm;
-use super::signals::{DT_S, Samples, Signals, moving_mean};
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the oil leads the joint by less what this motion takes.
 #[derive(Clone, Debug, Default)]

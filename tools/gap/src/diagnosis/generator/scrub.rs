@@ -9,7 +9,7 @@ use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
 use super::axles::Axles;
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Share of the middle axle's grip at which the tyres slide, against each joint. Below one: the
 /// wheels of an axle slide also against their own drive (seen on the nominal logs of a second plant:

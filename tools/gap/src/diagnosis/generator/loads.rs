@@ -2,7 +2,7 @@
 
 use xt28_machine::{Machine, Wheel};
 
-use super::signals::{Samples, Signals};
+use crate::diagnosis::signals::{Samples, Signals};
 
 /// What the ECU's pressure filter keeps of its last output a tick (facts 3.2): 0.164 s.
 pub(super) const KEPT: f64 = 0.940_88;

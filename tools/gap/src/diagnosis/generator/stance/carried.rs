@@ -3,9 +3,10 @@
 use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::{Effects, Parts};
 
-use super::instants::{AtWheel, Instant, PRESSURE_FILTER_S};
+use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
+use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// One arm as believed: how its sensors read and what hinders it.

@@ -3,7 +3,7 @@
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Opening of one milliampere of an arm valve's current (facts 1.1: 400 mA from start to full).
 const STEP: f64 = 1.0 / 400.0;

@@ -1,14 +1,16 @@
 //! One generator with its residuals at the base, and how they answer to every knob.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::evidence::{Base, Belief};
-use super::generator::Generator;
-use super::knob::Knob;
-use super::signals::Signals;
 use super::stack::Stack;
+use crate::diagnosis::belief::{Base, Belief};
+use crate::diagnosis::generator::Generator;
+use crate::diagnosis::knob::Knob;
+use crate::diagnosis::signals::Signals;
 
 /// Share of a knob's tolerance by which it is nudged.
 const NUDGE: f64 = 0.05;
@@ -30,12 +32,15 @@ pub(super) struct Watch {
 
 /// What the cost needs to know of one generator's residuals.
 #[derive(Clone, Debug)]
-pub(super) struct Sums {
+pub(in crate::diagnosis) struct Sums {
     /// Squares in each group.
     pub(super) squares: Vec<f64>,
     /// Slopes times residuals in each group, by the watch's own knobs.
     pub(super) gradients: Vec<DVector<f64>>,
 }
+
+/// Sums of generators that look at one wheel alone, one for each instant, by wheel and values.
+pub(in crate::diagnosis) type Memory = BTreeMap<(Generator, Vec<u64>), Vec<Sums>>;
 
 impl Watch {
     /// Residuals of `generator` around `base`, and how they answer to each of `knobs`.

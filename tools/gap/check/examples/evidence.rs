@@ -1,0 +1,85 @@
+//! Prints what the logs of a machine say before it is judged: evidence of each cause in nats, what the
+//! best one leaves on each signal in floors, and where the tolerances go while there is no cause.
+//!
+//! ```sh
+//! cargo run --release -p xt28-gap-plants --example write_case -- 7 standstill-drag:left out/
+//! cargo run --release -p xt28-gap-check --example evidence -- out/plant-7
+//! ```
+// A program: it prints and reads its arguments.
+#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+
+use std::path::PathBuf;
+
+use xt28_gap::diagnosis::{Candidate, Evidence, Findings, Inquiry, Knob, Signals};
+use xt28_gap_check::Source;
+use xt28_machine::Machine;
+use xt28_sim::Effects;
+
+/// Causes and signals printed of each machine.
+const LISTED: usize = 8;
+
+fn main() -> Result<(), String> {
+    let folders: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
+    if folders.is_empty() {
+        return Err("usage: evidence FOLDER...; each with logs, DBC and about.toml".to_owned());
+    }
+    for folder in folders {
+        let case = Source::Folder { answer: folder.with_extension("answer.toml"), folder };
+        let runs = case.runs().map_err(|error| error.to_string())?;
+        let inquiry = Inquiry::new(Machine::xt28(), runs);
+        let findings = inquiry.findings(&|_| ());
+        println!("{}: left over {:.2}", case.name(), findings.left_over());
+        print(&findings);
+        print_tolerances("beside the best", findings.shifts.clone());
+        let runs: Vec<Signals> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
+        let none = Effects::default();
+        let evidence = Evidence::new(&runs, &inquiry.machine, none.clone(), &Knob::all());
+        print_tolerances("where nothing is believed", evidence.shifts(&none));
+    }
+    Ok(())
+}
+
+fn print(findings: &Findings) {
+    for cause in findings.single.iter().take(LISTED) {
+        println!("  {}", line(cause));
+    }
+    for [first, second] in findings.pair.iter().take(LISTED / 2) {
+        println!("  {} beside {}", line(second), first.fit.hypothesis.effect.name);
+    }
+    let mut left: Vec<_> = findings.unbent.iter().zip(&findings.after).collect();
+    left.sort_by(|a, b| b.1.square.total_cmp(&a.1.square));
+    for (unbent, after) in left.into_iter().take(LISTED) {
+        let (before, after_floors) = (unbent.square.sqrt(), after.square.sqrt());
+        println!("    {} {}: {before:.2} to {after_floors:.2}", after.generator, after.signal);
+    }
+}
+
+fn print_tolerances(of: &str, mut shifts: Vec<(Knob, f64)>) {
+    println!("    tolerances, {of}:");
+    shifts.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
+    for (knob, by) in shifts.into_iter().take(LISTED) {
+        let name = match knob {
+            Knob::Effect(effect, parameter, scope) => {
+                format!("{} {scope} {}", effect.name, parameter.name)
+            }
+            Knob::Machine(tolerance) => tolerance.name.to_owned(),
+        };
+        println!("      {by:+.1} {name}");
+    }
+}
+
+fn line(cause: &Candidate) -> String {
+    let fit = &cause.fit;
+    let values: Vec<String> = fit.values.iter().map(|value| format!("{value:.4}")).collect();
+    let held = cause.held_gain.map_or("-".to_owned(), |held| format!("{held:.1}"));
+    format!(
+        "{:7.1} nats ({:.1} fitted, {held} foretold, {:.2} its own) {} {} = {}{}",
+        cause.score(),
+        fit.log_evidence,
+        cause.own_share,
+        fit.hypothesis.effect.name,
+        fit.hypothesis.scope,
+        values.join(", "),
+        if fit.from_s > 0.0 { format!(" from {:.1} s", fit.from_s) } else { String::new() },
+    )
+}

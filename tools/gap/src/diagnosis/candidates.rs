@@ -8,7 +8,7 @@ use xt28_sim::effects::Effect;
 use super::belief::{Base, Belief};
 use super::evidence::{Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
-use super::knob::Knob;
+use super::knob::{Knob, SHIFT_MAX};
 use super::search::search;
 use super::signals::Signals;
 
@@ -118,7 +118,7 @@ impl<'a> Docket<'a> {
     /// What each signal leaves that is for `fits` to explain.
     pub(super) fn apart(&self, fits: &[&Fit]) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
-        self.fit.apart(Belief { effects: &effects, from_s })
+        self.fit.apart(Belief { effects: &effects, from_s }, SHIFT_MAX)
     }
 
     /// Where the tolerances go once `fits` are believed, each by how many of its own.

@@ -199,11 +199,13 @@ impl<'a> Evidence<'a> {
         self.left_at(&sums, &DVector::zeros(self.knobs.len()))
     }
 
-    /// What the base leaves on each signal, tolerances at their best beside `belief`: the gap that is
-    /// the belief's to explain. Tolerances at their best without it bend to it, and hide it.
+    /// What the base leaves on each signal, tolerances at their best beside `belief`, but none further
+    /// than `most` of its own: the gap that is the belief's to explain. Tolerances at their best without
+    /// it bend to it, and hide it.
     #[must_use]
-    pub fn apart<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
+    pub fn apart<'e>(&self, belief: impl Into<Belief<'e>>, most: f64) -> Vec<Left> {
         let step = self.step(&self.sums(belief.into(), &|_| true));
+        let step = step.map(|by| by.clamp(-most, most));
         let sums = self.sums((&self.base.effects).into(), &|_| false);
         self.left_at(&sums, &step)
     }

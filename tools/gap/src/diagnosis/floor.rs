@@ -64,7 +64,8 @@ impl Signal {
             Self::TravelCourse => (0.03, 1.5),
             Self::BusMissing => (0.01, 1.0),
             Self::BusPlace => (0.03, 1.0),
-            Self::BusUneven => (0.05, 1.0),
+            // A millisecond of scheduling, or one frame in a hundred.
+            Self::BusUneven => (0.1, 1.0),
         };
         Floor { sigma, correlation_s }
     }

@@ -13,7 +13,6 @@ use super::candidates::Candidate;
 use super::evidence::Left;
 use super::excitation::not_testable;
 use super::generator::Generator;
-use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
@@ -22,14 +21,15 @@ use places::places;
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
 const SOMETHING: [f64; 2] = [18.0, 4.0];
 /// The same of a second cause beside the first, and the share of the first's evidence by which that
-/// rises: what a large cause leaves, another law takes for a second one.
+/// rises where another law of the first could explain all of the second's: what a large cause leaves,
+/// another law takes for a second one.
 const SECOND: [f64; 2] = [28.0, 5.0];
-const SECOND_SHARE: f64 = 0.012;
+const SECOND_SHARE: f64 = 0.02;
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
-const UNKNOWN: [f64; 2] = [1.75, 8.0];
-/// How much more a cause seems to leave whose one parameter has gone to the end of its range: it bends to
-/// what it is not.
-const AT_ITS_END: f64 = 2.2;
+const UNKNOWN: [f64; 2] = [1.65, 8.0];
+/// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
+/// is not in the catalogue bends them by more.
+const SHIFTS: f64 = 42.0;
 /// Share of a gap that a right cause may leave: laws of machines differ in their details.
 const LAW_SHARE: f64 = 0.15;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
@@ -47,6 +47,9 @@ const VAGUE_SHARE: f64 = 0.6;
 /// What pushes the wheels where plants differ: between wheel and arm or between wheel and ground. How
 /// the machine stands is no word against it.
 const PUSHES: &str = "rolling-resistance";
+
+/// What lets commands come in bunches: no log says which of a bunch a controller took.
+const BUNCHES: &str = "command-jitter";
 
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug)]
@@ -67,37 +70,30 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// How far the worst signal lies above what a right answer leaves; about one where all is explained.
+    /// How far the worst signal lies above what a right answer leaves, or all tolerances together above
+    /// what one takes; about one where all is explained.
     #[must_use]
     pub fn left_over(&self) -> f64 {
+        let bend = self.shifts.iter().map(|(_, by)| by * by).sum::<f64>() / SHIFTS;
         let ratio = |(unbent, after): (&Left, &Left)| {
             let allowed = 1.0 + self.law_share(after.generator) * unbent.square.sqrt();
             if after.samples < SAMPLES_MIN { 0.0 } else { after.square.sqrt() / allowed }
         };
-        let bent = if self.is_bent() { AT_ITS_END } else { 1.0 };
-        bent * self.unbent.iter().zip(&self.after).map(ratio).fold(0.0, f64::max)
+        let left = self.unbent.iter().zip(&self.after).map(ratio).fold(0.0, f64::max);
+        bend.max(left)
     }
 
     /// Share of a gap that what is believed may leave with a generator.
     fn law_share(&self, generator: Generator) -> f64 {
         let pair = self.pair.first().into_iter().flatten();
         let mut names = self.single.first().into_iter().chain(pair).map(Candidate::name);
+        let is_controller = matches!(generator, Generator::ArmEcu(_) | Generator::SteerEcu(_));
         let vague = names.any(|name| {
-            REMEMBERS.contains(&name) || (name == PUSHES && generator == Generator::Stance)
+            REMEMBERS.contains(&name)
+                || (name == PUSHES && generator == Generator::Stance)
+                || (name == BUNCHES && is_controller)
         });
         if vague { VAGUE_SHARE } else { LAW_SHARE }
-    }
-
-    /// Whether the best cause has one parameter, and that at an end of its range.
-    fn is_bent(&self) -> bool {
-        let at_its_end = |fit: &Fit| match fit.hypothesis.effect.parameters {
-            [p] => {
-                let near = |end: f64| (fit.values[0] - end).abs() < 1.0e-3 * p.tolerance;
-                p.range.into_iter().any(|end| end != p.neutral && near(end))
-            }
-            _ => false,
-        };
-        self.single.first().is_some_and(|best| at_its_end(&best.fit))
     }
 
     /// Evidence of the best cause, nats.
@@ -148,14 +144,19 @@ fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
         }
     };
     let rank = |(k, rank): (usize, &Vec<&Candidate>)| {
-        let beside = [SECOND[0] + SECOND_SHARE * findings.evidence(), SECOND[1]];
-        let is_there = if k == 0 { 1.0 } else { turned(rank[0].score(), beside) };
+        let is_there = if k == 0 { 1.0 } else { is_second(rank[0], findings.evidence()) };
         shares(rank, known * is_there)
     };
     let mut causes: Vec<Cause> = ranks.iter().enumerate().flat_map(rank).collect();
     causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     causes.truncate(LISTED);
     causes
+}
+
+/// Probability that a second cause is there beside a first of so many nats.
+fn is_second(second: &Candidate, first_nats: f64) -> f64 {
+    let shared = SECOND_SHARE * (1.0 - second.own_share) * first_nats;
+    turned(second.score(), [SECOND[0] + shared, SECOND[1]])
 }
 
 /// One cause for each effect, at its best scope, with the probability of all its scopes.
@@ -220,7 +221,7 @@ mod tests {
 
     use super::super::floor::Signal;
     use super::super::generator::Generator;
-    use super::super::hypothesis::Hypothesis;
+    use super::super::hypothesis::{Fit, Hypothesis};
     use super::*;
 
     fn candidate(name: &str, score: f64) -> Candidate {
@@ -272,6 +273,24 @@ mod tests {
         let diagnosis = judged(400.0, 250.0, vec![candidate("leakage-drift", 300.0)]);
         assert_eq!(diagnosis.verdict, Verdict::Unknown);
         assert!(diagnosis.causes[0].probability < 0.5);
+    }
+
+    #[test]
+    fn what_a_tolerance_has_to_hide_is_unknown() {
+        let [knob, ..] = Knob::all()[..] else { panic!("there are knobs") };
+        let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
+        let verdict = |by: f64| {
+            let findings = Findings {
+                unbent: left(1.0),
+                apart: left(1.0),
+                single: Vec::new(),
+                pair: Vec::new(),
+                after: left(1.0),
+                shifts: vec![(knob, by)],
+            };
+            judge(&inquiry, &findings).verdict
+        };
+        assert_eq!([verdict(-3.0), verdict(-9.0)], [Verdict::None, Verdict::Unknown]);
     }
 
     #[test]

@@ -8,6 +8,8 @@ use xt28_sim::effects::{Block, CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Sco
 /// what one believes of one effect before seeing data; two hundred of them at their full width bend to
 /// a third of a valve's gain (measured on foreign plants, docs/diagnosis.md).
 const SOUND: f64 = 0.4;
+/// How many of its own a knob goes beside a right answer; one that goes further hides something.
+pub(super) const SHIFT_MAX: f64 = 2.5;
 
 /// One number that may be other than one believes.
 #[derive(Clone, Copy, Debug)]

@@ -9,6 +9,7 @@ mod driving;
 mod joints;
 mod loads;
 mod position_control;
+mod press;
 mod pump;
 mod rolling;
 mod scrub;
@@ -103,7 +104,7 @@ impl Generator {
                     || name.starts_with("stroke-")
             }
             Self::Travel => {
-                ["slippery-ground", "wheel-speed-scale"].contains(&name)
+                ["slippery-ground", "soft-tyres", "wheel-speed-scale"].contains(&name)
                     || name.starts_with("gnss-")
             }
             Self::Bus => effect.block == Block::Bus,

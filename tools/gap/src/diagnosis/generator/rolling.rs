@@ -1,14 +1,15 @@
 //! Wheels against one another: all roll over the same ground, so their speeds differ only by bends and
-//! by the arms' swing, and by who slips or misreads.
+//! by the arms' swing, and by who slips, misreads or rolls on a soft tyre.
 //!
 //! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
 //! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
 
 use xt28_machine::{Linkage, Machine, PerWheel, Side};
-use xt28_sim::Effects;
+use xt28_sim::{Effects, Parts};
 
 use super::axles::Axles;
 use super::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use super::press::{normal_n, own_n, rolling_radius_m};
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
@@ -34,6 +35,8 @@ const BENT_RAD: f64 = 0.02;
 #[must_use]
 pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) -> RollingErrors {
     let (axles, linkage) = (Axles::new(machine), machine.linkage());
+    let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
+    let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
     let is_flat = matches!(s.terrain, xt28_sim::Terrain::Flat);
     let mut errors = RollingErrors {
         wheel_rad_s: PerWheel::from_fn(|_| vec![f64::NAN; s.len]),
@@ -42,7 +45,12 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     for i in (0..s.len).step_by(STRIDE) {
         let end = (i + STRIDE).min(s.len);
         let joint = [0, 1].map(|j| s.joint_rad[j][i]);
-        let ground_m_s = ground_speeds(s, machine, effects, &linkage, i);
+        let radius_m = PerWheel::from_fn(|w| {
+            let pose = linkage.at_stroke(s.smooth_stroke_m[w][i]);
+            let normal_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose);
+            rolling_radius_m([&nominal, &parts], w, normal_n)
+        });
+        let ground_m_s = ground_speeds(s, effects, &linkage, &radius_m, i);
         let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
         let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
         let expected = |ahead| expected_speeds(&axles, machine, joint, rate, ahead);
@@ -64,8 +72,8 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
             let e = &effects.wheels[wheel];
             let error = none[wheel] + ahead * (one[wheel] - none[wheel]) - ground_m_s[wheel];
-            let per_m = e.wheel_speed_scale.factor
-                / (machine.wheels.radius_m * (1.0 - e.slippery_ground.slip));
+            let per_m =
+                e.wheel_speed_scale.factor / (radius_m[wheel] * (1.0 - e.slippery_ground.slip));
             errors.wheel_rad_s[wheel][i..end].fill(error * per_m / doubt(s, machine, i));
         }
     }
@@ -83,13 +91,13 @@ fn doubt(s: &Signals, machine: &Machine, i: usize) -> f64 {
 /// Speed at which each wheel's frame goes over the ground by what its sensor reads, m/s.
 fn ground_speeds(
     s: &Signals,
-    machine: &Machine,
     effects: &Effects,
     linkage: &Linkage,
+    radius_m: &PerWheel<f64>,
     i: usize,
 ) -> PerWheel<f64> {
-    let radius_m = machine.wheels.radius_m;
     PerWheel::from_fn(|w| {
+        let radius_m = radius_m[w];
         let e = &effects.wheels[w];
         let reading = s.smooth_wheel_speed_rad_s[w][i];
         let rolls = reading / e.wheel_speed_scale.factor * radius_m;

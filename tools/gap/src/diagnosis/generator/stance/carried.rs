@@ -1,11 +1,12 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
+use crate::diagnosis::generator::press::own_n;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -93,12 +94,6 @@ impl<'a> Carrier<'a> {
             load_arm_m: pose.reach_m - below_m * rolls * self.resistance_m,
         }
     }
-}
-
-/// Weight of a wheel and its arm that the pivot does not carry, N.
-pub(super) fn own_n(machine: &Machine, parts: &Parts, wheel: Wheel) -> f64 {
-    let arm_kg = parts.arms[wheel].body.mass_kg * machine.vehicle.arm_com_share;
-    (parts.wheel.mass_kg + arm_kg) * GRAVITY_M_S2
 }
 
 /// Moments about an arm's pivot at one instant.

@@ -9,9 +9,9 @@
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
-use super::carried::own_n;
 use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
 use super::motion::{lagged, unflickered};
+use crate::diagnosis::generator::press::{normal_n, own_n};
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// Rolling over which a hold builds up, m (assumed).
@@ -99,9 +99,8 @@ impl Rim {
         let loads_n = s.cylinder_load_n[wheel].iter();
         let steps = stroke_m.iter().zip(loads_n).step_by(STRIDE).map(|(stroke_m, load_n)| {
             let pose = parts.linkage.at_stroke(*stroke_m);
-            let normal_n = own_n + load_n * pose.lever_m / pose.reach_m;
             let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
-            (turned_m, slips_m * normal_n.max(0.0))
+            (turned_m, slips_m * normal_n(own_n, *load_n, &pose))
         });
         let (swing_m, grip_nm) = steps.unzip();
         let pushed_nm = late(pump_torque_nm(s, machine, wheel));

@@ -1,0 +1,44 @@
+//! What a wheel presses the ground with, and what radius that leaves it to roll on.
+
+use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, Wheel};
+use xt28_sim::Parts;
+
+/// Share of a tyre's deflection by which the radius is smaller that it rolls on: a third is a radial
+/// tyre's, the whole a rigid band's; models that put the contact midway have a half.
+const RADIUS_SHARE: f64 = 0.45;
+
+/// Weight of a wheel and its arm that the pivot does not carry, N.
+pub(super) fn own_n(machine: &Machine, parts: &Parts, wheel: Wheel) -> f64 {
+    let arm_kg = parts.arms[wheel].body.mass_kg * machine.vehicle.arm_com_share;
+    (parts.wheel.mass_kg + arm_kg) * GRAVITY_M_S2
+}
+
+/// What a wheel of its own weight `own_n` presses with at rest where its cylinder carries `load_n`, N.
+pub(super) fn normal_n(own_n: f64, load_n: f64, pose: &ArmPose) -> f64 {
+    (own_n + load_n * pose.lever_m / pose.reach_m).max(0.0)
+}
+
+/// Radius that a wheel pressed by `normal_n` rolls on, m: less than `nominal`'s by what its tyre is softer.
+pub(super) fn rolling_radius_m([nominal, parts]: [&Parts; 2], wheel: Wheel, normal_n: f64) -> f64 {
+    let sag_m = |of: &Parts| normal_n / of.tyres[wheel].stiffness_n_m;
+    parts.radius_m - RADIUS_SHARE * (sag_m(parts) - sag_m(nominal))
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::Effects;
+
+    use super::*;
+
+    #[test]
+    fn a_soft_tyre_rolls_on_a_smaller_radius_the_harder_it_is_pressed() {
+        let machine = Machine::xt28();
+        let mut soft = Effects::default();
+        soft.wheels[Wheel::Mr].soft_tyre.stiffness_n_m = 3.0e5;
+        let parts = [&Effects::default(), &soft].map(|effects| Parts::new(&machine, effects));
+        let radius_m = |wheel, normal_n| rolling_radius_m([&parts[0], &parts[1]], wheel, normal_n);
+        assert!((radius_m(Wheel::Mr, 30.0e3) - (parts[0].radius_m - 0.045)).abs() < 2.0e-3);
+        assert!((radius_m(Wheel::Mr, 0.0) - parts[0].radius_m).abs() < 1e-12);
+        assert!((radius_m(Wheel::Ml, 30.0e3) - parts[0].radius_m).abs() < 1e-12);
+    }
+}

@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
-use xt28_sim::effects::{Parameter, Scope};
+use xt28_sim::effects::{Block, Parameter, Scope};
 
 use super::course::{Horizon, WIDTH, floors};
 use super::squares::{self, BLOCK};
@@ -82,7 +82,10 @@ impl HowFar {
             // One that went to the end of its range is known no better than it was before.
             let at_its_end = turn.parameter.range.contains(value);
             let before = causes[turn.cause].parameters.iter().find(|e| e.name == estimate.name);
+            let shows = causes[turn.cause].effect.block != Block::Bus;
             estimates[turn.cause].push(match before {
+                // Commands come as they are in the log: the whole machine cannot know it better.
+                Some(before) if !shows => *before,
                 Some(before) if at_its_end => estimate.reaching(before),
                 _ => estimate,
             });

@@ -3,6 +3,7 @@
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
+use xt28_sim::effects::BusEffects;
 use xt28_sim::{Effects, Held, Solver};
 
 use super::course::{Horizon, Quantity, Row, STRIDE, fix, measured};
@@ -149,8 +150,11 @@ impl Course {
 
 impl<'a> Bench<'a> {
     fn new(course: &'a Course, machine: &Machine, effects: &Effects, state: &Measured<'_>) -> Self {
+        // Commands come when they came in the log: what the bus did to them is in it already.
+        let effects = Effects { bus: BusEffects::default(), ..effects.clone() };
+        let gnss_late_s = effects.sensors.gnss_latency.delay_s;
         let config = EmulatorConfig {
-            effects: effects.clone(),
+            effects,
             solver: Solver::Reduced,
             stroke_m: state.at(0).stroke_m,
             ..EmulatorConfig::new(machine.clone(), course.signals.terrain.clone(), None)
@@ -162,7 +166,7 @@ impl<'a> Bench<'a> {
             outbox: Outbox::with_capacity(64),
             next_frame: 0,
             antenna_m: Vec::with_capacity(course.signals.len),
-            gnss_late_s: effects.sensors.gnss_latency.delay_s,
+            gnss_late_s,
         }
     }
 

@@ -1,5 +1,5 @@
 //! Prints what the logs of a machine say before it is judged: evidence of each cause in nats, what the
-//! best one leaves on each signal in floors, and where the tolerances go while there is no cause.
+//! best one leaves on each signal in floors, and where the tolerances go with it and without any.
 //!
 //! ```sh
 //! cargo run --release -p xt28-gap-plants --example write_case -- 7 standstill-drag:left out/
@@ -55,7 +55,8 @@ fn print(findings: &Findings) {
 }
 
 fn print_tolerances(of: &str, mut shifts: Vec<(Knob, f64)>) {
-    println!("    tolerances, {of}:");
+    let squares: f64 = shifts.iter().map(|(_, by)| by * by).sum();
+    println!("    tolerances, {of}: {squares:.0} squares of their own");
     shifts.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
     for (knob, by) in shifts.into_iter().take(LISTED) {
         let name = match knob {

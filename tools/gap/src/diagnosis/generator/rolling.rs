@@ -4,7 +4,7 @@
 //! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
 //! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
 
-use xt28_machine::{Linkage, Machine, PerWheel, Side};
+use xt28_machine::{ArmPose, Linkage, Machine, PerWheel, Side};
 use xt28_sim::{Effects, Parts};
 
 use super::axles::Axles;
@@ -45,12 +45,12 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     for i in (0..s.len).step_by(STRIDE) {
         let end = (i + STRIDE).min(s.len);
         let joint = [0, 1].map(|j| s.joint_rad[j][i]);
+        let pose = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i]));
         let radius_m = PerWheel::from_fn(|w| {
-            let pose = linkage.at_stroke(s.smooth_stroke_m[w][i]);
-            let normal_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose);
+            let normal_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose[w]);
             rolling_radius_m([&nominal, &parts], w, normal_n)
         });
-        let ground_m_s = ground_speeds(s, effects, &linkage, &radius_m, i);
+        let ground_m_s = ground_speeds(s, effects, &linkage, (&pose, &radius_m), i);
         let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
         let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
         let expected = |ahead| expected_speeds(&axles, machine, joint, rate, ahead);
@@ -93,20 +93,17 @@ fn ground_speeds(
     s: &Signals,
     effects: &Effects,
     linkage: &Linkage,
-    radius_m: &PerWheel<f64>,
+    (pose, radius_m): (&PerWheel<ArmPose>, &PerWheel<f64>),
     i: usize,
 ) -> PerWheel<f64> {
     PerWheel::from_fn(|w| {
-        let radius_m = radius_m[w];
+        let (pose, radius_m) = (&pose[w], radius_m[w]);
         let e = &effects.wheels[w];
         let reading = s.smooth_wheel_speed_rad_s[w][i];
         let rolls = reading / e.wheel_speed_scale.factor * radius_m;
         // Front arms point forward, the others backward.
         let forward = if w.axle() as usize == 0 { 1.0 } else { -1.0 };
-        let (pose, after) = (
-            linkage.at_stroke(s.smooth_stroke_m[w][i]),
-            linkage.at_stroke(s.smooth_stroke_m[w][i] + 1e-4),
-        );
+        let after = linkage.at_stroke(s.smooth_stroke_m[w][i] + 1e-4);
         let by_stroke = |a: f64, b: f64| (b - a) / 1e-4 * forward * s.smooth_stroke_rate_m_s[w][i];
         let turns = by_stroke(pose.angle_rad, after.angle_rad) * radius_m;
         // Turned on its arm and with its arm it rolls; less what it is carried ahead of its frame.

@@ -51,6 +51,8 @@ struct Turn {
     cause: usize,
     scope: Scope,
     parameter: &'static Parameter,
+    /// Whether the whole machine answers to it. Commands come as they are in the log, so a bus shows not.
+    shows: bool,
 }
 
 impl HowFar {
@@ -82,10 +84,8 @@ impl HowFar {
             // One that went to the end of its range is known no better than it was before.
             let at_its_end = turn.parameter.range.contains(value);
             let before = causes[turn.cause].parameters.iter().find(|e| e.name == estimate.name);
-            let shows = causes[turn.cause].effect.block != Block::Bus;
             estimates[turn.cause].push(match before {
-                // Commands come as they are in the log: the whole machine cannot know it better.
-                Some(before) if !shows => *before,
+                Some(before) if !turn.shows => *before,
                 Some(before) if at_its_end => estimate.reaching(before),
                 _ => estimate,
             });
@@ -225,6 +225,9 @@ impl HowFar {
         errors: &[f64],
     ) -> Vec<Vec<f64>> {
         let slope = |k: usize| {
+            if !turns[k].shows {
+                return vec![0.0; errors.len()];
+            }
             let parameter = turns[k].parameter;
             let far = (at[k] - parameter.neutral).abs();
             let nudge = (0.3 * parameter.tolerance).max(0.04 * far);
@@ -245,8 +248,8 @@ impl HowFar {
 
 fn turns(causes: &[Cause]) -> Vec<Turn> {
     let of = |(cause, c): (usize, &Cause)| {
-        let scope = c.scope;
-        let turn = move |parameter| Turn { cause, scope, parameter };
+        let (scope, shows) = (c.scope, c.effect.block != Block::Bus);
+        let turn = move |parameter| Turn { cause, scope, parameter, shows };
         c.effect.parameters.iter().map(turn).collect::<Vec<_>>()
     };
     causes.iter().enumerate().flat_map(of).collect()

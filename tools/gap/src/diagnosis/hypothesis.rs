@@ -1,6 +1,7 @@
 //! One effect at one scope, fitted to the logs.
 
 mod descent;
+mod spread;
 
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
@@ -9,6 +10,7 @@ use super::belief::Belief;
 use super::evidence::Evidence;
 use super::generator::Generator;
 use descent::descend;
+use spread::Spread;
 
 /// Beginnings that an effect may have, as many as can be told apart in a run.
 const BEGINNINGS: f64 = 12.0;
@@ -29,7 +31,7 @@ pub struct Fit {
     pub hypothesis: Hypothesis,
     /// One value a parameter.
     pub values: Vec<f64>,
-    /// Standard deviation of each value.
+    /// Standard deviation of each value, whatever the others are.
     pub sigma: Vec<f64>,
     /// Before this instant of every run it is not there, s.
     pub from_s: f64,
@@ -120,43 +122,12 @@ impl Hypothesis {
 
     fn weighed(&self, evidence: &Evidence<'_>, from_s: f64, values: Vec<f64>, cost: f64) -> Fit {
         let of = |moved: &[f64]| self.cost(evidence, from_s, moved);
-        let parameters = self.effect.parameters.iter().enumerate();
-        let sigma: Vec<f64> =
-            parameters.map(|(k, p)| sigma(&of, &values, cost, k, p).min(wide(p))).collect();
-        let occam: f64 =
-            self.effect.parameters.iter().zip(&sigma).map(|(p, s)| (wide(p) / s).ln()).sum();
+        let Spread { sigma, log_share } = Spread::about(&of, &values, cost, self.effect.parameters);
         let beginning = if from_s > 0.0 { BEGINNINGS.ln() } else { 0.0 };
         let log_evidence =
-            0.5 * (evidence.base_cost() - cost) - occam - beginning + self.log_prior();
+            0.5 * (evidence.base_cost() - cost) + log_share - beginning + self.log_prior();
         Fit { hypothesis: *self, values, sigma, from_s, log_evidence }
     }
-}
-
-/// Standard deviation of parameter `k` about `at`, the others held: where the cost is up by one.
-///
-/// The step is sought so that the cost rises by about one; at the end of a range, inwards alone.
-fn sigma(cost: &dyn Fn(&[f64]) -> f64, at: &[f64], least: f64, k: usize, p: &Parameter) -> f64 {
-    let rise = |by: f64| {
-        let mut moved = at.to_vec();
-        moved[k] = (at[k] + by).clamp(p.range[0], p.range[1]);
-        let step = (moved[k] - at[k]).abs();
-        (step > 0.5 * by.abs()).then(|| (cost(&moved) - least, step))
-    };
-    let (mut step, mut found) = (0.1 * p.tolerance, wide(p));
-    for _ in 0..8 {
-        let sides: Vec<(f64, f64)> = [step, -step].into_iter().filter_map(rise).collect();
-        let up = sides.iter().map(|(rise, _)| rise).sum::<f64>() / sides.len().max(1) as f64;
-        let Some((_, taken)) = sides.first() else { break };
-        if up > 0.0 {
-            found = taken / up.sqrt();
-        }
-        if (0.3..3.0).contains(&up) {
-            break;
-        }
-        step =
-            if up <= 0.0 { 3.0 * step } else { (step / up.sqrt()).clamp(0.1 * step, 10.0 * step) };
-    }
-    found
 }
 
 /// What it costs to believe a parameter so many widths from neutral: twice the negative logarithm of

@@ -81,13 +81,12 @@ impl HowFar {
         let mut estimates = vec![Vec::new(); causes.len()];
         for ((turn, value), sigma) in turns.iter().zip(&at).zip(&sigma) {
             let estimate = Estimate::new(turn.parameter, *value, *sigma);
-            // One that went to the end of its range is known no better than it was before.
-            let at_its_end = turn.parameter.range.contains(value);
             let before = causes[turn.cause].parameters.iter().find(|e| e.name == estimate.name);
             estimates[turn.cause].push(match before {
                 Some(before) if !turn.shows => *before,
-                Some(before) if at_its_end => estimate.reaching(before),
-                _ => estimate,
+                // Blocks and the whole machine have other faults: what they say apart is in doubt.
+                Some(before) => estimate.reaching(before),
+                None => estimate,
             });
         }
         let shrink = self.shrink_of(&self.gaps(&effects, since_s));

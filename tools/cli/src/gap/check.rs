@@ -75,7 +75,7 @@ impl Check {
         }
         let mut report = Report::new(&examination, judged);
         if self.sweep {
-            let told = |w: &Withheld| eprintln!("without {}: {:?}", w.effect, w.verdict);
+            let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
             report = report.with_sweep(sweep(self.seed, &told)?);
         }
         print!("{}", report.text());
@@ -102,4 +102,12 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     let why =
         |error| format!("{}: cannot write: {error}; give a folder that exists", path.display());
     Ok(fs::write(path, text).map_err(why)?)
+}
+
+/// What was said of a machine by a diagnosis that does not know its effect.
+fn withheld_line(w: &Withheld) -> String {
+    let verdict = format!("{:?}", w.verdict).to_lowercase();
+    let [named, place] = [&w.named, &w.place].map(|text| text.as_deref().unwrap_or("nothing"));
+    let (case, effect, scope) = (&w.case, w.effect, &w.scope);
+    format!("{case} without {effect} {scope}: {verdict}; likeliest {named}; parts most {place}")
 }

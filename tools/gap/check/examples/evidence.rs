@@ -4,6 +4,7 @@
 //! ```sh
 //! cargo run --release -p xt28-gap-plants --example write_case -- 7 standstill-drag:left out/
 //! cargo run --release -p xt28-gap-check --example evidence -- out/plant-7
+//! cargo run --release -p xt28-gap-check --example evidence -- --without standstill-drag out/plant-7
 //! ```
 // A program: it prints and reads its arguments.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
@@ -14,26 +15,38 @@ use xt28_gap::diagnosis::{Candidate, Evidence, Findings, Inquiry, Knob, Signals}
 use xt28_gap_check::Source;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
+use xt28_sim::effects::find;
 
 /// Causes and signals printed of each machine.
 const LISTED: usize = 8;
 
 fn main() -> Result<(), String> {
-    let folders: Vec<PathBuf> = std::env::args().skip(1).map(PathBuf::from).collect();
-    if folders.is_empty() {
-        return Err("usage: evidence FOLDER...; each with logs, DBC and about.toml".to_owned());
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut withheld = None;
+    if arguments.first().is_some_and(|first| first == "--without") {
+        let name = arguments.get(1).cloned().unwrap_or_default();
+        withheld = Some(find(&name).ok_or(format!("no effect is called '{name}'"))?);
+        arguments.drain(..2);
     }
-    for folder in folders {
+    if arguments.is_empty() {
+        let of = "each with logs, DBC and about.toml";
+        return Err(format!("usage: evidence [--without EFFECT] FOLDER...; {of}"));
+    }
+    for folder in arguments.into_iter().map(PathBuf::from) {
         let case = Source::Folder { answer: folder.with_extension("answer.toml"), folder };
         let runs = case.runs().map_err(|error| error.to_string())?;
-        let inquiry = Inquiry::new(Machine::xt28(), runs);
+        let mut inquiry = Inquiry::new(Machine::xt28(), runs);
+        if let Some(effect) = withheld {
+            inquiry = inquiry.without(effect);
+        }
         let findings = inquiry.findings(&|_| ());
         println!("{}: left over {:.2}", case.name(), findings.left_over());
         print(&findings);
         print_tolerances("beside the best", findings.shifts.clone());
         let runs: Vec<Signals> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
         let none = Effects::default();
-        let evidence = Evidence::new(&runs, &inquiry.machine, none.clone(), &Knob::all());
+        let evidence =
+            Evidence::new(&runs, &inquiry.machine, none.clone(), &Knob::of(&inquiry.catalogue));
         print_tolerances("where nothing is believed", evidence.shifts(&none));
     }
     Ok(())

@@ -117,7 +117,7 @@ impl Report {
         writeln!(to, "{:<32} {}", "at the right place", cell(&placed))?;
         writeln!(
             to,
-            "{:<22} {:<7} {:<8} {:<30} largest gap",
+            "{:<22} {:<7} {:<8} {:<30} parts most",
             "effect", "scope", "said", "likeliest"
         )?;
         for w in &self.sweep {

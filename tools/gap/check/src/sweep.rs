@@ -21,17 +21,19 @@ use crate::{CheckError, Score, crew};
 pub struct Withheld {
     /// The effect.
     pub effect: &'static str,
+    /// The machine, by whose seed it is drawn again.
+    pub case: String,
     /// Its wheels on this machine; `all` where it has none.
     pub scope: String,
     /// What was said without it.
     pub verdict: Verdict,
     /// The likeliest cause named without it.
     pub named: Option<String>,
-    /// Block and wheels with the largest gap.
+    /// Block and wheels whose gap says most.
     pub place: Option<String>,
     /// Whether it was called unknown, or by the name of one that these logs cannot tell from it.
     pub is_told: bool,
-    /// Whether the largest gap is where the effect shows.
+    /// Whether that is where the effect shows.
     pub is_placed: bool,
 }
 
@@ -87,6 +89,7 @@ fn withhold(effect: &'static Effect, case: &Case) -> Result<Withheld, CheckError
     });
     Ok(Withheld {
         effect: effect.name,
+        case: case.name().to_owned(),
         scope: scope.to_string(),
         verdict: blind.verdict,
         named: first.map(|cause| format!("{} {}", cause.effect.name, cause.scope)),

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use xt28_gap::diagnosis::{Direction, Evidence, Fit, Generator, Knob, Regime, Signals, search};
-use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Terrain};
+use xt28_gap::diagnosis::{
+    Belief, Direction, Evidence, Fit, Generator, Hypothesis, Knob, Regime, Signals, search,
+};
+use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Series, Terrain};
 use xt28_machine::{Axle, Machine, Wheel};
 use xt28_sim::effects::{Effect, Overlay, Scope, find};
 use xt28_sim::{Effects, Solver};
@@ -135,4 +137,54 @@ fn another_gain_of_the_position_control_shows_on_the_ecu_alone() {
     let rivals = ["arm-gain", "valve-gain", "arm-delay"];
     let Some(fits) = ranked("run-2-multisine.log.gz", overlay, &rivals) else { return };
     assert_first(&fits, "arm-gain", FRONT, 1.3, 0.03);
+}
+
+/// A field log whose pressure sensor on the left middle arm reads `bias_pa` too much from `from_s` on,
+/// through the ECU's filter; a frame holds no pressure below none.
+fn biased(run: &str, bias_pa: f64, from_s: f64) -> Option<Signals> {
+    let (log, terrain) = log(run)?;
+    let mut series = log.all_series().clone();
+    let sound = &series[&Channel::BorePressure(Wheel::Ml)];
+    let mut read = Series::default();
+    for (at_s, pa) in sound.iter() {
+        let share = 1.0 - (-(at_s - from_s).max(0.0) / 0.164).exp();
+        read.push(at_s, (pa + share * bias_pa).max(0.0));
+    }
+    series.insert(Channel::BorePressure(Wheel::Ml), read);
+    Some(Signals::of_series("biased", &series, log.duration_s(), terrain).unwrap())
+}
+
+/// Bias of the left middle sensor from `from_s` on that explains `signals` best, Pa, and what the arm's
+/// stroke then leaves, in floors.
+fn found_bias(signals: Signals, from_s: f64) -> (f64, f64) {
+    let (runs, machine) = ([signals], Machine::xt28());
+    let generators = vec![Generator::ArmStroke(Wheel::Ml), Generator::Stance];
+    let none = Effects::default();
+    let evidence = Evidence::watching(generators, &runs, &machine, none, &Knob::tolerances());
+    let effect = find("pressure-bias").unwrap();
+    let hypothesis = Hypothesis { effect, scope: Scope::Wheel(Wheel::Ml) };
+    let fit = hypothesis.refit(&evidence, from_s, &[-1.0e5]);
+    let effects = hypothesis.applied(&Effects::default(), &fit.values);
+    let left = evidence.left(Belief { effects: &effects, from_s });
+    (fit.values[0], left[0].square.sqrt())
+}
+
+#[test]
+fn a_pressure_that_jumps_is_followed() {
+    let Some(signals) = biased("run-3-s_turn.log.gz", -8.0e5, 12.0) else { return };
+    let (bias_pa, left) = found_bias(signals, 12.0);
+    // Frames that weigh otherwise take a part of it.
+    assert!((bias_pa + 8.0e5).abs() < 1.6e5, "{bias_pa}");
+    assert!(left < 1.0, "{left}");
+}
+
+#[test]
+fn a_pressure_at_the_end_of_its_scale_says_nothing() {
+    // The middle arms hang in this run: 0.36 MPa less 0.8 MPa is no pressure that a frame can hold.
+    let Some(signals) = biased("run-1-arm_step.log.gz", -8.0e5, 0.0) else { return };
+    let clipped = signals.chamber_pa[Wheel::Ml][0].iter().filter(|pa| **pa <= 0.0).count();
+    assert!(clipped > 100, "{clipped}");
+    let (bias_pa, _) = found_bias(signals, 0.0);
+    // As a zero it would be a bias of -0.36 MPa.
+    assert!(bias_pa.abs() < 1.0e5, "{bias_pa}");
 }

@@ -156,7 +156,9 @@ impl<'a> Docket<'a> {
             return None;
         }
         let late = hypothesis.refit(&self.fit, at_s, &found.fit.values);
-        let (_, at_s) = best(&[-1.0, -0.5, 0.0, 0.5, 1.0].map(|by| at_s + by), &late.values)?;
+        let near = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|by| at_s + by);
+        let gains = near.map(|at_s| (hypothesis.gain(&self.fit, at_s, &late.values), at_s));
+        let (_, at_s) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
         let late = self.weighed(hypothesis.refit(&self.fit, at_s, &late.values));
         let least = if is_late { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)

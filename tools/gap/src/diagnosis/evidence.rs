@@ -55,6 +55,8 @@ pub struct Left {
     pub signal: Signal,
     /// Mean square in units of the floor; about one where nothing but the floor is left.
     pub square: f64,
+    /// The same without the samples that leave most, one in twenty-five: one bump is no law.
+    pub steady: f64,
     /// Independent samples.
     pub samples: f64,
 }
@@ -187,9 +189,16 @@ impl<'a> Evidence<'a> {
     /// What is left on each signal, tolerances at their best.
     #[must_use]
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
-        let sums = self.sums(belief.into(), &|_| true);
+        let belief = belief.into();
+        let sums = self.sums(belief, &|_| true);
         let step = self.step(&sums);
-        self.left_at(&sums, &step)
+        let mut all = self.left_at(&sums, &step);
+        let steady = |watch: &Watch| watch.steady(self.runs, &self.machine, belief, &step);
+        let steady = self.watches.par_iter().flat_map_iter(steady).collect::<Vec<_>>();
+        for (left, steady) in all.iter_mut().zip(steady) {
+            left.steady = steady;
+        }
+        all
     }
 
     /// What the base leaves on each signal, tolerances where they are believed to be.
@@ -218,6 +227,7 @@ impl<'a> Evidence<'a> {
                     generator: watch.stack.generator,
                     signal: group.signal,
                     square: square / group.samples.max(1.0),
+                    steady: square / group.samples.max(1.0),
                     samples: group.samples,
                 });
             }

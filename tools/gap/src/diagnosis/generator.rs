@@ -25,6 +25,7 @@ use xt28_sim::effects::{Block, Effect, Scope};
 use super::floor::Signal;
 use super::signals::{Samples, Signals};
 pub(super) use driving::PRESSURE_AT_TORQUE_MAX_PA;
+pub(super) use loads::is_off_scale;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;
@@ -135,6 +136,19 @@ impl Generator {
     /// Its residuals on one run, in units of their floors.
     #[must_use]
     pub fn residuals(self, s: &Signals, machine: &Machine, effects: &Effects) -> Vec<Residual> {
+        self.residuals_after(s, machine, (effects, 0.0, effects))
+    }
+
+    /// The same where `before` held until `from_s`, as far as its own memory reaches back over that
+    /// instant: a reading that jumps leaves an arm's stroke in doubt for seconds. What is before the
+    /// instant is as if `effects` had always been there.
+    #[must_use]
+    pub(super) fn residuals_after(
+        self,
+        s: &Signals,
+        machine: &Machine,
+        (before, from_s, effects): (&Effects, f64, &Effects),
+    ) -> Vec<Residual> {
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
             signal,
@@ -147,7 +161,8 @@ impl Generator {
         };
         match self {
             Self::ArmStroke(w) => {
-                vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, effects, w))]
+                let error = arms::stroke_error_m(s, machine, (before, from_s, effects), w);
+                vec![one(Signal::Stroke, error)]
             }
             Self::ArmEcu(w) => {
                 let error = position_control::arm_opening_error(s, machine, effects, w);

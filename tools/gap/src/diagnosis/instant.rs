@@ -10,6 +10,8 @@ pub(super) struct Instant {
     pub(super) sample: usize,
     /// Whether the machine neither gains nor loses speed.
     pub(super) is_calm: bool,
+    /// Whether every pressure is on its sensor's scale.
+    pub(super) is_read: bool,
     /// How many times as doubtful as at rest what is said of attitude and weight is.
     pub(super) doubt: f64,
     /// Front and rear joint, rad.

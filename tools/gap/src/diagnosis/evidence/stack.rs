@@ -3,6 +3,7 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
+use crate::diagnosis::belief::Belief;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::signals::Signals;
@@ -32,6 +33,8 @@ pub(super) struct Stack {
     pub(super) at_s: Vec<f64>,
     /// All groups.
     pub(super) groups: Vec<Group>,
+    /// What they were made with.
+    base: Effects,
     mask: Vec<bool>,
 }
 
@@ -51,6 +54,7 @@ impl Stack {
             group: Vec::new(),
             at_s: Vec::new(),
             groups: Vec::new(),
+            base: effects.clone(),
             mask: Vec::new(),
         };
         for run in runs {
@@ -75,11 +79,17 @@ impl Stack {
 
     /// The same samples under another belief; what can no longer be said stays as it was, so that
     /// nobody gains by it.
-    pub(super) fn again(&self, runs: &[Signals], machine: &Machine, effects: &Effects) -> Vec<f64> {
+    pub(super) fn again(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        Belief { effects, from_s }: Belief<'_>,
+    ) -> Vec<f64> {
+        let both = (&self.base, from_s, effects);
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
-            for residual in self.generator.residuals(run, machine, effects) {
+            for residual in self.generator.residuals_after(run, machine, both) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {

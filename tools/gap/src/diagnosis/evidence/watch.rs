@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::stack::Stack;
+use super::stack::{Group, Stack};
 use crate::diagnosis::belief::{Base, Belief};
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::knob::Knob;
@@ -14,6 +14,9 @@ use crate::diagnosis::signals::Signals;
 
 /// Share of a knob's tolerance by which it is nudged.
 const NUDGE: f64 = 0.05;
+
+/// Share of the samples of a signal that may be bumps.
+const BUMPS: f64 = 0.04;
 
 /// One generator with its residuals at the base and their slopes.
 pub(super) struct Watch {
@@ -64,7 +67,7 @@ impl Watch {
                 Knob::Machine(_) => 1.0,
             };
             knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
-            let nudged = stack.again(runs, &machine, &effects);
+            let nudged = stack.again(runs, &machine, (&effects).into());
             let slope: Vec<f64> =
                 nudged.iter().zip(&stack.values).map(|(n, b)| (n - b) / NUDGE).collect();
             slope.iter().any(|s| *s != 0.0).then_some(slope)
@@ -102,11 +105,12 @@ impl Watch {
 
     /// What the cost needs to know under another belief.
     pub(super) fn again(&self, runs: &[Signals], machine: &Machine, belief: Belief<'_>) -> Sums {
-        let values = self.stack.again(runs, machine, belief.effects);
+        let values = self.stack.again(runs, machine, belief);
         self.sums_of(&self.stitched(&values, belief.from_s))
     }
 
-    /// The same for effects that set in at each of `instants` of every run, s.
+    /// The same for effects that set in at each of `instants` of every run, s; as if they had always been
+    /// there, so that one run of the generator does for all.
     pub(super) fn onsets(
         &self,
         runs: &[Signals],
@@ -114,8 +118,33 @@ impl Watch {
         effects: &Effects,
         instants: &[f64],
     ) -> Vec<Sums> {
-        let values = self.stack.again(runs, machine, effects);
+        let values = self.stack.again(runs, machine, effects.into());
         instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
+    }
+
+    /// Mean square that each group leaves under a belief, tolerances gone by `step`, without the samples
+    /// that leave most.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
+    pub(super) fn steady(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        belief: Belief<'_>,
+        step: &DVector<f64>,
+    ) -> Vec<f64> {
+        let again = self.stack.again(runs, machine, belief);
+        let mut values = self.stitched(&again, belief.from_s);
+        for (knob, slope) in self.knobs.iter().zip(&self.slopes) {
+            values.iter_mut().zip(slope).for_each(|(value, slope)| *value += slope * step[*knob]);
+        }
+        let steady = |(index, group): (usize, &Group)| {
+            let own = values.iter().zip(&self.stack.group).filter(|(_, group)| **group == index);
+            let mut squares: Vec<f64> = own.map(|(value, _)| value * value).collect();
+            squares.sort_by(f64::total_cmp);
+            let kept = (squares.len() as f64 * (1.0 - BUMPS)).ceil() as usize;
+            squares[..kept].iter().sum::<f64>() / ((1.0 - BUMPS) * group.samples).max(1.0)
+        };
+        self.stack.groups.iter().enumerate().map(steady).collect()
     }
 
     /// The base before `from_s` of every run, `values` after.

@@ -17,6 +17,8 @@ pub(super) struct ArmDrive<'a> {
     wheel: Wheel,
     arm: Arm,
     sensors: WheelEffects,
+    /// Sensors before a sample, where they were others.
+    before: Option<(usize, WheelEffects)>,
     loads: Loads,
     area_bore_m2: f64,
 }
@@ -36,8 +38,26 @@ impl<'a> ArmDrive<'a> {
             wheel,
             arm: Arm::new(machine, &smooth),
             sensors: effects.wheels[wheel],
-            loads: Loads::new(signals, machine, wheel),
+            before: None,
+            loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
             area_bore_m2: machine.arms.area_bore_m2,
+        }
+    }
+
+    /// The same, with the sensors as `before` had them until `from_s` into the run: a reading that jumps
+    /// is followed.
+    pub(super) fn after(mut self, before: &Effects, from_s: f64) -> Self {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let from = (from_s / DT_S).round().max(0.0) as usize;
+        self.before = (from > 0).then_some((from, before.wheels[self.wheel]));
+        self
+    }
+
+    /// The sensors at sample `i`.
+    const fn sensors(&self, i: usize) -> &WheelEffects {
+        match &self.before {
+            Some((from, before)) if i < *from => before,
+            _ => &self.sensors,
         }
     }
 
@@ -54,15 +74,15 @@ impl<'a> ArmDrive<'a> {
     /// A force counts as the distance that this very arm gives way for it: were it the nominal arm's,
     /// a softer one would seem to be measured better.
     pub(super) fn stroke_errors_m(&self, share: &[f64]) -> (Samples, Samples) {
-        let (is_new, s) = (&self.signals.load_is_new[self.wheel], &self.sensors);
+        let is_new = &self.signals.load_is_new[self.wheel];
         let mut state = self.started();
         let mut seen_n = self.loads.reading_n[0];
         let mut error_m = 0.0;
         let step = |i: usize| {
-            let input = self.input(i);
+            let (input, s) = (self.input(i), self.sensors(i));
             let made_n = self.arm.oil_force_n(&state, &input.motion);
             let stiffness_n_m = self.stiffness_n_m(&state, &input.motion, made_n);
-            seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(made_n);
+            seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(i, made_n);
             let m_n = s.stroke_scale.factor / (stiffness_n_m * s.pressure_scale.factor);
             if self.loads.is_drained.get(i) == Some(&true) {
                 // What came in past the valve is not in the opening: begin anew.
@@ -92,9 +112,12 @@ impl<'a> ArmDrive<'a> {
     }
 
     fn input(&self, i: usize) -> ArmInput {
-        let (s, stroke) = (&self.sensors, &self.signals.stroke_m[self.wheel]);
-        let truth = |reading_m: f64| (reading_m - s.stroke_bias.bias_m) / s.stroke_scale.factor;
-        let (now_m, before_m) = (truth(stroke[i]), truth(stroke[i.saturating_sub(1)]));
+        let (s, stroke) = (self.sensors(i), &self.signals.stroke_m[self.wheel]);
+        let truth = |i: usize| {
+            let s = self.sensors(i);
+            (stroke[i] - s.stroke_bias.bias_m) / s.stroke_scale.factor
+        };
+        let (now_m, before_m) = (truth(i), truth(i.saturating_sub(1)));
         // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
         let stroke_rate_m_s = (now_m - before_m) / DT_S;
         let offset_n = s.pressure_bias.bias_pa * self.area_bore_m2;
@@ -105,9 +128,9 @@ impl<'a> ArmDrive<'a> {
         }
     }
 
-    /// Load that the sensors show for one of `load_n`.
-    fn read(&self, load_n: f64) -> f64 {
-        let s = &self.sensors;
+    /// Load that the sensors show at sample `i` for one of `load_n`.
+    fn read(&self, i: usize, load_n: f64) -> f64 {
+        let s = self.sensors(i);
         s.pressure_scale.factor * load_n + s.pressure_bias.bias_pa * self.area_bore_m2
     }
 }

@@ -18,14 +18,15 @@ const SLIDING_M_S: f64 = 0.004;
 /// The block is driven with the opening that the ECU asked for, the load and the motion that were
 /// measured. It says which load the oil then makes and the ECU's filter shows; where that is another
 /// than the one read, the cylinder would stand elsewhere by what its lock gives way for the difference.
+/// Sensors are those of `before` until `from_s`.
 #[must_use]
 pub(super) fn stroke_error_m(
     signals: &Signals,
     machine: &Machine,
-    effects: &Effects,
+    (before, from_s, effects): (&Effects, f64, &Effects),
     wheel: Wheel,
 ) -> Samples {
-    let drive = ArmDrive::new(signals, machine, effects, wheel);
+    let drive = ArmDrive::new(signals, machine, effects, wheel).after(before, from_s);
     let share = pump::flow_share(signals, machine, effects);
     let (errors, softness) = drive.stroke_errors_m(&share);
     let stiction = &effects.arms[wheel].stiction;

@@ -1,6 +1,7 @@
 //! One cylinder's load as the ECU reads it, and as it was before the ECU's pressure filter.
 
 use xt28_machine::{Machine, Wheel};
+use xt28_sim::effects::WheelEffects;
 
 use crate::diagnosis::signals::{Samples, Signals};
 
@@ -11,6 +12,10 @@ pub(super) const KEPT: f64 = 0.940_88;
 /// a reading in whole kilopascals leaves open, below any chamber that is full).
 const DRAINED: f64 = 0.8;
 
+/// How long before and after a reading at the end of its scale the filter cannot be undone, samples:
+/// two readings at the slowest rate.
+const OFF_SCALE_SAMPLES: usize = 20;
+
 /// Loads of one cylinder over a run, positive under weight.
 pub(super) struct Loads {
     /// As read, N.
@@ -18,7 +23,7 @@ pub(super) struct Loads {
     /// With the filter undone, N.
     pub(super) oil_n: Samples,
     /// Whether a chamber was drained: the piston ran ahead of its oil, so that what came in came past
-    /// the valve. Empty where no pressures are logged.
+    /// the valve; or whether its sensor was off its scale. Empty where no pressures are logged.
     pub(super) is_drained: Vec<bool>,
 }
 
@@ -27,7 +32,12 @@ impl Loads {
     ///
     /// Between two readings the load before the filter is the one that, held, leads from the first
     /// to the second. A reading is whole kilopascals, so what is undone is right to 0.2 kN.
-    pub(super) fn new(signals: &Signals, machine: &Machine, wheel: Wheel) -> Self {
+    pub(super) fn new(
+        signals: &Signals,
+        machine: &Machine,
+        sensors: &WheelEffects,
+        wheel: Wheel,
+    ) -> Self {
         let [bore, rod] = &signals.chamber_pa[wheel];
         let (a, is_new) = (&machine.arms, &signals.load_is_new[wheel]);
         let reading_n: Samples = if bore.is_empty() || rod.is_empty() {
@@ -39,11 +49,26 @@ impl Loads {
         let rod_pa = DRAINED * machine.hydraulics.return_pressure_pa;
         let bore_pa = rod_pa * a.area_rod_m2 / a.area_bore_m2;
         let (true_bore, true_rod) = (undone(bore, is_new), undone(rod, is_new));
-        let each = true_bore.iter().zip(&true_rod);
-        let is_drained = each.map(|(bore, rod)| *bore < bore_pa || *rod < rod_pa).collect();
+        let (bias_pa, scale) = (sensors.pressure_bias.bias_pa, sensors.pressure_scale.factor);
+        let each = true_bore.iter().zip(&true_rod).enumerate();
+        let drained = |(i, (bore, rod)): (usize, (&f64, &f64))| {
+            // As read too, so that no belief is to begin anew less often than another.
+            let least = bore.min((bore - bias_pa) / scale);
+            least < bore_pa || *rod < rod_pa || is_off_scale(signals, wheel, i)
+        };
+        let is_drained = each.map(drained).collect();
         let oil_n = undone(&reading_n, is_new);
         Self { reading_n, oil_n, is_drained }
     }
+}
+
+/// Whether a pressure of a cylinder is at the least that a frame holds, or was or will be shortly, so that
+/// nobody knows what it is: a sensor that reads too little, under little load.
+pub(in crate::diagnosis) fn is_off_scale(signals: &Signals, wheel: Wheel, i: usize) -> bool {
+    let near = i.saturating_sub(OFF_SCALE_SAMPLES)..=(i + OFF_SCALE_SAMPLES);
+    let ends = [*near.start(), i, *near.end()];
+    let at_its_end = |pa: &Samples| ends.iter().any(|i| pa.get(*i).is_some_and(|pa| *pa <= 0.0));
+    signals.chamber_pa[wheel].iter().any(at_its_end)
 }
 
 /// Input of a filter that keeps [`KEPT`] of itself every sample, from its output where that is new.

@@ -47,7 +47,8 @@ struct Error {
 /// between wheel and arm or between wheel and ground moves it by 15 mm, and plants differ in that.
 const ROLLING_DOUBT: f64 = 2.0;
 
-/// What nothing can be said of: the ground is not level, the machine is on fewer than three wheels.
+/// What nothing can be said of: the ground is not level, a pressure is off its scale, the machine is on
+/// fewer than three wheels.
 const UNKNOWN: Error = Error {
     attitude_rad: [f64::NAN; 2],
     weight: [f64::NAN; 3],
@@ -62,7 +63,7 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     let holds = Holds::new(s, machine, effects, &parts);
     let flat = matches!(s.terrain, Terrain::Flat);
     let judge = |instant: &Instant| {
-        if !flat {
+        if !flat || !instant.is_read {
             return UNKNOWN;
         }
         let held = holds.as_ref().map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));

@@ -5,6 +5,7 @@ use std::ops::Range;
 use xt28_machine::Wheel;
 
 use crate::Channel;
+use crate::diagnosis::generator::is_off_scale;
 use crate::diagnosis::signals::{DT_S, Signals};
 
 /// Ticks of the log's clock from one sample to the next.
@@ -136,7 +137,9 @@ fn row(s: &Signals, i: usize) -> Row {
     for w in Wheel::ALL {
         let k = w.index();
         row[Quantity::Stroke.columns().start + k] = s.stroke_reading_m[w][i];
-        row[Quantity::Load.columns().start + k] = s.cylinder_load_n[w][i];
+        let is_read = !is_off_scale(s, w, i);
+        let load_n = if is_read { s.cylinder_load_n[w][i] } else { f64::NAN };
+        row[Quantity::Load.columns().start + k] = load_n;
         row[Quantity::WheelSpeed.columns().start + k] = s.wheel_speed_rad_s[w][i];
         row[Quantity::Opening.columns().start + k] = s.opening[w][i];
     }

@@ -4,6 +4,7 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 
 use super::motion::{Motion, lagged};
 use crate::diagnosis::generator::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use crate::diagnosis::generator::loads::is_off_scale;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -35,6 +36,7 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
         .map(|i| Instant {
             sample: i,
             is_calm: motion.is_calm[i],
+            is_read: Wheel::ALL.into_iter().all(|w| !is_off_scale(s, w, i)),
             doubt: doubt[i],
             joint_rad: [joint[0][i], joint[1][i]],
             attitude_rad: [attitude[0][i], attitude[1][i]],

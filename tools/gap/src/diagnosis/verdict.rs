@@ -8,7 +8,7 @@ use xt28_sim::effects::{Block, Effect, Parameter, Scope};
 pub struct Diagnosis {
     /// In one word.
     pub verdict: Verdict,
-    /// Blocks on measured inputs, the largest gap first.
+    /// Blocks on measured inputs, the gap that says most first.
     #[serde(rename = "where")]
     pub places: Vec<Place>,
     /// Causes, the likeliest first. Those with a probability above one half are stood by.

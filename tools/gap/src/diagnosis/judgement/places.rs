@@ -1,9 +1,9 @@
-//! Blocks by their gap; wheels of one signal that part alike are one place.
+//! Blocks by what their gaps say; wheels of one signal that part alike are one place.
 
 use std::collections::BTreeMap;
 
 use xt28_machine::{PerWheel, Wheel};
-use xt28_sim::effects::{Block, Scope};
+use xt28_sim::effects::Scope;
 
 use crate::diagnosis::evidence::Left;
 use crate::diagnosis::floor::Signal;
@@ -12,45 +12,62 @@ use crate::diagnosis::verdict::Place;
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
 const ALIKE: f64 = 0.4;
 
-/// Places by their gap, largest first.
-pub(super) fn places(before: &[Left]) -> Vec<Place> {
-    let excess = |left: &Left| (left.square - 1.0).max(0.0);
-    let total: f64 = before.iter().map(excess).sum::<f64>().max(f64::MIN_POSITIVE);
-    let place = |block: Block, scope: Scope, signal: Signal, of: &[&Left]| Place {
-        block,
-        scope,
-        residual: signal.to_string(),
-        gap_over_noise: of.iter().map(|left| left.square.sqrt()).fold(0.0, f64::max),
-        share: of.iter().map(|left| excess(left)).sum::<f64>() / total,
-    };
-    let mut of_wheels: BTreeMap<String, Vec<(Wheel, &Left)>> = BTreeMap::new();
+/// Places by what their gaps say, in nats: what goes once the best cause is believed, and what is then
+/// still there beyond the floor. A gap that every machine has says nothing, however large it is.
+pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
+    let all: Vec<Parting> = before.iter().zip(after).map(Parting::new).collect();
+    let total: f64 = all.iter().map(|parting| parting.excess).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut places = Vec::new();
-    for left in before {
-        match wheel(left) {
+    let mut place = |scope: Scope, of: &[&Parting]| {
+        let Some(Parting { left, .. }) = of.first() else { return };
+        let place = Place {
+            block: left.generator.block(),
+            scope,
+            residual: left.signal.to_string(),
+            gap_over_noise: of.iter().map(|p| p.left.square.sqrt()).fold(0.0, f64::max),
+            share: of.iter().map(|parting| parting.excess).sum::<f64>() / total,
+        };
+        places.push((of.iter().map(|parting| parting.nats).sum::<f64>(), place));
+    };
+    let mut of_wheels: BTreeMap<String, Vec<(Wheel, &Parting)>> = BTreeMap::new();
+    for parting in &all {
+        match wheel(parting.left) {
             Some(wheel) => {
-                of_wheels.entry(left.signal.to_string()).or_default().push((wheel, left))
+                let signal = parting.left.signal.to_string();
+                of_wheels.entry(signal).or_default().push((wheel, parting));
             }
-            None => places.push(place(left.generator.block(), Scope::All, left.signal, &[left])),
+            None => place(Scope::All, &[parting]),
         }
     }
     for wheels in of_wheels.values() {
         let mut gaps = PerWheel::splat(0.0);
-        for (wheel, left) in wheels {
-            gaps[*wheel] = left.square.sqrt();
+        for (wheel, parting) in wheels {
+            gaps[*wheel] = parting.left.square.sqrt();
         }
         for scope in scopes(&gaps) {
-            let of: Vec<&Left> = wheels
-                .iter()
-                .filter(|(wheel, _)| scope.contains(*wheel))
-                .map(|(_, l)| *l)
-                .collect();
-            if let Some(first) = of.first() {
-                places.push(place(first.generator.block(), scope, first.signal, &of));
-            }
+            let within = wheels.iter().filter(|(wheel, _)| scope.contains(*wheel));
+            place(scope, &within.map(|(_, parting)| *parting).collect::<Vec<_>>());
         }
     }
-    places.sort_by(|a, b| b.gap_over_noise.total_cmp(&a.gap_over_noise));
-    places
+    places.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    places.into_iter().map(|(_, place)| place).collect()
+}
+
+/// How one signal parts.
+struct Parting<'a> {
+    left: &'a Left,
+    /// Mean square beyond the floor's.
+    excess: f64,
+    /// What that says.
+    nats: f64,
+}
+
+impl<'a> Parting<'a> {
+    fn new((before, after): (&'a Left, &Left)) -> Self {
+        let least = Left { square: after.square.min(1.0), ..*after };
+        let excess = (before.square - 1.0).max(0.0);
+        Self { left: before, excess, nats: (before.cost() - least.cost()).max(0.0) }
+    }
 }
 
 fn wheel(left: &Left) -> Option<Wheel> {
@@ -80,6 +97,7 @@ fn scopes(gaps: &PerWheel<f64>) -> Vec<Scope> {
 #[cfg(test)]
 mod tests {
     use xt28_machine::Axle;
+    use xt28_sim::effects::Block;
 
     use super::*;
     use crate::diagnosis::Generator;
@@ -89,6 +107,7 @@ mod tests {
             generator: Generator::ArmStroke(wheel),
             signal: Signal::Stroke,
             square,
+            steady: square,
             samples: 100.0,
         }
     }
@@ -97,7 +116,7 @@ mod tests {
     fn an_axle_that_parts_is_one_place() {
         let square = |wheel: Wheel| if wheel.axle() == Axle::Front { 100.0 } else { 1.0 };
         let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
-        let places = places(&before);
+        let places = places(&before, &before);
         assert_eq!(places[0].scope, Scope::Axle(Axle::Front));
         assert!((places[0].gap_over_noise - 10.0).abs() < 1e-12);
         assert!((places[0].share - 1.0).abs() < 1e-12);
@@ -108,6 +127,25 @@ mod tests {
     fn wheels_without_a_name_together_stand_alone() {
         let square = |wheel| if matches!(wheel, Wheel::Fr | Wheel::Bl) { 81.0 } else { 1.0 };
         let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
-        assert_eq!(places(&before).len(), 6);
+        assert_eq!(places(&before, &before).len(), 6);
+    }
+    #[test]
+    fn what_a_cause_explains_comes_before_a_gap_that_stays() {
+        let roll = |square| Left {
+            generator: Generator::Stance,
+            signal: Signal::Roll,
+            square,
+            steady: square,
+            samples: 30.0,
+        };
+        let joint = |square| Left {
+            generator: Generator::Joint(0),
+            signal: Signal::JointAngle,
+            square,
+            steady: square,
+            samples: 100.0,
+        };
+        let places = places(&[roll(1.4), joint(1.2)], &[roll(1.4), joint(0.2)]);
+        assert_eq!(places[0].block, Block::Steering);
     }
 }

@@ -27,7 +27,7 @@ pub struct Candidate {
     /// What was fitted, and how well.
     pub fit: Fit,
     /// What the same values gain on the runs held out, nats; below zero they do harm. None where none
-    /// was held out.
+    /// was held out, or where none of them shows it: a pump is not short while no arm moves.
     pub held_gain: Option<f64>,
     /// Share of what it gains that another law of the cause beside it could not explain: one where it is
     /// the first.
@@ -137,7 +137,8 @@ impl<'a> Docket<'a> {
 
     fn weighed(&self, fit: Fit) -> Candidate {
         let gain = |held| fit.hypothesis.gain(held, fit.from_s, &fit.values);
-        let held_gain = self.held.as_ref().map(gain);
+        // Exactly nothing: not one residual is another with it.
+        let held_gain = self.held.as_ref().map(gain).filter(|gain| *gain != 0.0);
         Candidate { fit, held_gain, own_share: 1.0 }
     }
 

@@ -113,10 +113,14 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
                 let over_s = (to - from).max(1) as f64 * DT_S;
                 let speeds_up = (mean(to) - mean(from)) / over_s;
                 let [first, second] = circuits_pa(signals, i);
-                error = inertia_kg_m2 * speeds_up
-                    + drag_nm * (mean(i) / TURNS_RAD_S).tanh()
-                    + weight_nm * climbs(signals, effects, i)
+                let rolls = (mean(i) / TURNS_RAD_S).tanh();
+                let apart = inertia_kg_m2 * speeds_up
+                    + drag_nm * rolls
+                    + weight_nm * climbs(signals, machine, effects, i)
                     - nm_per_pa * (first + second) / 2.0;
+                // A wheel at rest is held by anything up to its rolling resistance.
+                let holds_nm = drag_nm.abs() * (1.0 - rolls.abs());
+                error = (apart.abs() - holds_nm).max(0.0).copysign(apart);
             }
             error
         })
@@ -124,10 +128,22 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
     moving_mean(&errors, FORCE_S)
 }
 
-/// Sine of the grade along the machine's heading.
+/// Sine of the grade that the machine climbs: each frame climbs along its own heading, by its share of
+/// the weight.
 #[allow(clippy::cast_precision_loss)]
-fn climbs(signals: &Signals, effects: &Effects, i: usize) -> f64 {
-    let heading = signals.heading_at(i as f64 * DT_S).map_or(0.0, |[heading, _]| heading);
-    let (sin, cos) = heading.sin_cos();
-    effects.slope.grade_x_rad.sin() * cos + effects.slope.grade_y_rad.sin() * sin
+fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i: usize) -> f64 {
+    let front = signals.heading_at(i as f64 * DT_S).map_or(0.0, |[heading, _]| heading);
+    let middle = front - signals.joint_rad[0][i];
+    let rear = middle - signals.joint_rad[1][i];
+    let (m, payload_kg) = (&machine.masses, effects.masses.payload.mass_kg);
+    let axle_kg = 2.0 * (m.arm_kg + m.wheel_kg);
+    let frames = [
+        (front, m.front_frame_kg + axle_kg),
+        (middle, m.middle_frame_kg + axle_kg),
+        (rear, m.rear_frame_kg + axle_kg + payload_kg),
+    ];
+    let [grade_x, grade_y] = [effects.slope.grade_x_rad.sin(), effects.slope.grade_y_rad.sin()];
+    let along =
+        |(heading, kg): (f64, f64)| kg * (grade_x * heading.cos() + grade_y * heading.sin());
+    frames.map(along).iter().sum::<f64>() / (machine.mass_kg() + payload_kg)
 }

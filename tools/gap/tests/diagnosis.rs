@@ -164,6 +164,20 @@ fn the_wheel_that_misreads_is_told_by_the_others() {
     assert!((values[0] - 0.93).abs() < 0.015, "{values:?}");
 }
 
+/// At rest rolling resistance holds a part of what the pumps would have to.
+#[test]
+fn a_slope_under_a_machine_that_stands_is_found_with_its_size() {
+    let overlay = "[[effect]]\nname = \"terrain-slope\"\ngrade_x_rad = 0.03\n\
+                   grade_y_rad = 0.02";
+    let Some((evidence, values)) =
+        fitted("terrain-slope", Scope::All, "run-1-arm_step.log.gz", overlay)
+    else {
+        return;
+    };
+    assert!(evidence > 10.0, "{evidence}");
+    assert!((values[0] - 0.03).abs() < 0.004 && (values[1] - 0.02).abs() < 0.004, "{values:?}");
+}
+
 fn random_bools(len: usize, share: f64) -> Vec<bool> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     (0..len).map(|_| random.random_bool(share)).collect()

@@ -55,7 +55,8 @@ pub struct Left {
     pub signal: Signal,
     /// Mean square in units of the floor; about one where nothing but the floor is left.
     pub square: f64,
-    /// The same without the samples that leave most, one in twenty-five: one bump is no law.
+    /// The same without the samples that leave most, one in twenty-five: one bump is no law. Told by
+    /// [`Evidence::left`]; elsewhere it is `square`.
     pub steady: f64,
     /// Independent samples.
     pub samples: f64,
@@ -190,11 +191,14 @@ impl<'a> Evidence<'a> {
     #[must_use]
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
         let belief = belief.into();
-        let sums = self.sums(belief, &|_| true);
+        let values = |watch: &Watch| watch.values(self.runs, &self.machine, belief);
+        let values: Vec<Vec<f64>> = self.watches.par_iter().map(values).collect();
+        let each = self.watches.iter().zip(&values);
+        let sums: Vec<_> = each.map(|(w, values)| Cow::Owned(w.sums_of(values))).collect();
         let step = self.step(&sums);
         let mut all = self.left_at(&sums, &step);
-        let steady = |watch: &Watch| watch.steady(self.runs, &self.machine, belief, &step);
-        let steady = self.watches.par_iter().flat_map_iter(steady).collect::<Vec<_>>();
+        let each = self.watches.iter().zip(values);
+        let steady = each.flat_map(|(watch, values)| watch.steady(values, &step));
         for (left, steady) in all.iter_mut().zip(steady) {
             left.steady = steady;
         }

@@ -105,8 +105,17 @@ impl Watch {
 
     /// What the cost needs to know under another belief.
     pub(super) fn again(&self, runs: &[Signals], machine: &Machine, belief: Belief<'_>) -> Sums {
-        let values = self.stack.again(runs, machine, belief);
-        self.sums_of(&self.stitched(&values, belief.from_s))
+        self.sums_of(&self.values(runs, machine, belief))
+    }
+
+    /// Residuals under another belief, each times the root of its weight.
+    pub(super) fn values(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        belief: Belief<'_>,
+    ) -> Vec<f64> {
+        self.stitched(&self.stack.again(runs, machine, belief), belief.from_s)
     }
 
     /// The same for effects that set in at each of `instants` of every run, s; as if they had always been
@@ -122,18 +131,10 @@ impl Watch {
         instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
     }
 
-    /// Mean square that each group leaves under a belief, tolerances gone by `step`, without the samples
-    /// that leave most.
+    /// Mean square of `values` in each group, tolerances gone by `step`, without the samples that leave
+    /// most.
     #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
-    pub(super) fn steady(
-        &self,
-        runs: &[Signals],
-        machine: &Machine,
-        belief: Belief<'_>,
-        step: &DVector<f64>,
-    ) -> Vec<f64> {
-        let again = self.stack.again(runs, machine, belief);
-        let mut values = self.stitched(&again, belief.from_s);
+    pub(super) fn steady(&self, mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
         for (knob, slope) in self.knobs.iter().zip(&self.slopes) {
             values.iter_mut().zip(slope).for_each(|(value, slope)| *value += slope * step[*knob]);
         }
@@ -153,7 +154,8 @@ impl Watch {
         both.map(|((value, base), at_s)| if *at_s < from_s { *base } else { *value }).collect()
     }
 
-    fn sums_of(&self, values: &[f64]) -> Sums {
+    /// What the cost needs to know of `values`.
+    pub(super) fn sums_of(&self, values: &[f64]) -> Sums {
         let mut gradients = vec![DVector::zeros(self.knobs.len()); self.stack.groups.len()];
         for (knob, slope) in self.slopes.iter().enumerate() {
             for ((s, r), &group) in slope.iter().zip(values).zip(&self.stack.group) {

@@ -6,7 +6,9 @@ use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_gap_check::{Examination, Examined, Options, Report, Source, Withheld, curve, sweep};
+use xt28_gap_check::{
+    Examination, Examined, Options, Report, Source, Withheld, curve, one_of_each, sweep,
+};
 
 use crate::{Failure, Verdict};
 
@@ -35,7 +37,7 @@ pub(crate) struct Check {
     #[arg(long, value_name = "FILE")]
     curve: Option<PathBuf>,
     /// Also withhold every effect from the catalogue in turn: a machine with it must come out as
-    /// unknown, at the right place
+    /// unknown, at the right place. With --set, what is wrong with each machine of the set
     #[arg(long)]
     sweep: bool,
     /// Leave the plain rules out: the scores of the diagnosis alone
@@ -75,8 +77,12 @@ impl Check {
         }
         let mut report = Report::new(&examination, judged);
         if self.sweep {
+            let machines = match &self.set {
+                Some(folder) => Source::in_folder(folder)?,
+                None => one_of_each(self.seed),
+            };
             let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
-            report = report.with_sweep(sweep(self.seed, &told)?);
+            report = report.with_sweep(sweep(&machines, &told)?);
         }
         print!("{}", report.text());
         if let Some(json) = &self.json {
@@ -108,6 +114,6 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
 fn withheld_line(w: &Withheld) -> String {
     let verdict = format!("{:?}", w.verdict).to_lowercase();
     let [named, place] = [&w.named, &w.place].map(|text| text.as_deref().unwrap_or("nothing"));
-    let (case, effect, scope) = (&w.case, w.effect, &w.scope);
-    format!("{case} without {effect} {scope}: {verdict}; likeliest {named}; parts most {place}")
+    let (case, truth) = (&w.case, w.truth.join(" + "));
+    format!("{case} without {truth}: {verdict}; likeliest {named}; parts most {place}")
 }

@@ -163,6 +163,11 @@ fn truth(source: &Source, text: &str) -> Result<Truth, CheckError> {
     Err(CheckError::Answer { path, line: 1, problem })
 }
 
+/// The truth about a case, for who may know it.
+pub(crate) fn truth_of(source: &Source) -> Result<Truth, CheckError> {
+    truth(source, &source.answer_text()?)
+}
+
 fn texts(sources: &[Source]) -> Result<Vec<String>, CheckError> {
     sources.iter().map(Source::answer_text).collect()
 }

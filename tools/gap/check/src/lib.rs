@@ -34,6 +34,6 @@ pub use score::{
     statements,
 };
 pub use source::{MIX, Source};
-pub use sweep::{Withheld, sweep, sweep_scores};
+pub use sweep::{Withheld, one_of_each, sweep, sweep_scores};
 pub use truth::{Fact, Kind, Truth};
 pub use wilson::wilson;

@@ -112,25 +112,17 @@ impl Report {
 
     fn write_sweep(&self, to: &mut String) -> std::fmt::Result {
         let [told, placed] = sweep_scores(&self.sweep);
-        writeln!(to, "\neach effect withheld from the catalogue in turn")?;
+        writeln!(to, "\nwhat is wrong withheld from the catalogue")?;
         writeln!(to, "{:<32} {}", "unknown, or its class", cell(&told))?;
         writeln!(to, "{:<32} {}", "at the right place", cell(&placed))?;
-        writeln!(
-            to,
-            "{:<22} {:<7} {:<8} {:<30} parts most",
-            "effect", "scope", "said", "likeliest"
-        )?;
+        writeln!(to, "{:<30} {:<8} {:<30} parts most", "without", "said", "likeliest")?;
         for w in &self.sweep {
             let verdict = format!("{:?}", w.verdict).to_lowercase();
             let [named, place] = [&w.named, &w.place].map(|t| t.as_deref().unwrap_or("-"));
             let marks =
                 [(w.is_told, "  <- named falsely or missed"), (w.is_placed, "  <- wrong place")];
             let marks = marks.map(|(fine, mark)| if fine { "" } else { mark }).concat();
-            writeln!(
-                to,
-                "{:<22} {:<7} {verdict:<8} {named:<30} {place}{marks}",
-                w.effect, w.scope
-            )?;
+            writeln!(to, "{:<30} {verdict:<8} {named:<30} {place}{marks}", w.truth.join(" + "))?;
         }
         Ok(())
     }

@@ -8,23 +8,23 @@ use rand::seq::IndexedRandom;
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
-use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Verdict};
+use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Place, Verdict};
 use xt28_gap_plants::{Case, Cause as Fault, Scope as Wheels, Scopes};
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::{CATALOGUE, Effect, Scope};
 
+use crate::examination::truth_of;
 use crate::source::Source;
+use crate::truth::Fact;
 use crate::{CheckError, Score, crew};
 
-/// What came of withholding one effect.
+/// What came of withholding what is wrong with one machine.
 #[derive(Clone, Debug, Serialize)]
 pub struct Withheld {
-    /// The effect.
-    pub effect: &'static str,
-    /// The machine, by whose seed it is drawn again.
+    /// The machine: that of a set, or the seed by which it is drawn again.
     pub case: String,
-    /// Its wheels on this machine; `all` where it has none.
-    pub scope: String,
+    /// What is wrong with it, `EFFECT SCOPE` each; the scope is `all` where an effect has none.
+    pub truth: Vec<String>,
     /// What was said without it.
     pub verdict: Verdict,
     /// The likeliest cause named without it.
@@ -33,32 +33,45 @@ pub struct Withheld {
     pub place: Option<String>,
     /// Whether it was called unknown, or by the name of one that these logs cannot tell from it.
     pub is_told: bool,
-    /// Whether that is where the effect shows.
+    /// Whether that is where the effect shows; of two, either.
     pub is_placed: bool,
 }
 
 /// One machine for each effect of the catalogue that the foreign plants have, drawn from `seed`.
+#[must_use]
+pub fn one_of_each(seed: u64) -> Vec<Source> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(2);
+    let drawn = |fault: &'static Fault| {
+        let from = if fault.scopes == Scopes::Part { 1 } else { 0 };
+        let wheels = *Wheels::EVERY[from..].choose(&mut random).expect("there are scopes");
+        Source::Drawn(Box::new(Case::of(u64::from(random.next_u32()), fault, wheels)))
+    };
+    CATALOGUE.iter().filter_map(|effect| Fault::find(effect.name)).map(drawn).collect()
+}
+
+/// Each of `machines` that has effects of the catalogue, diagnosed as if nobody had heard of them.
 /// `told` hears of each that is done, from any thread.
 ///
 /// # Errors
-/// [`CheckError`] of the first machine whose logs cannot be made or read.
-pub fn sweep(seed: u64, told: &(dyn Fn(&Withheld) + Sync)) -> Result<Vec<Withheld>, CheckError> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    random.set_stream(2);
-    let found = CATALOGUE.iter().filter_map(|effect| Some((effect, Fault::find(effect.name)?)));
-    let machines: Vec<_> = found
-        .map(|(effect, fault)| {
-            let from = if fault.scopes == Scopes::Part { 1 } else { 0 };
-            let wheels = *Wheels::EVERY[from..].choose(&mut random).expect("there are scopes");
-            (effect, Case::of(u64::from(random.next_u32()), fault, wheels))
-        })
-        .collect();
-    let one = |(effect, case): &(&'static Effect, Case)| {
-        let withheld = withhold(effect, case)?;
+/// [`CheckError`] of the first machine whose logs or answer cannot be made or read.
+pub fn sweep(
+    machines: &[Source],
+    told: &(dyn Fn(&Withheld) + Sync),
+) -> Result<Vec<Withheld>, CheckError> {
+    let mut known = Vec::new();
+    for machine in machines {
+        let truth = truth_of(machine)?;
+        if truth.is_nameable() {
+            known.push((machine, truth.facts));
+        }
+    }
+    let one = |(machine, facts): &(&Source, Vec<Fact>)| {
+        let withheld = withhold(machine, facts)?;
         told(&withheld);
         Ok(withheld)
     };
-    crew::each(&machines, one).into_iter().collect()
+    crew::each(&known, one).into_iter().collect()
 }
 
 /// How many are told, and how many are placed.
@@ -67,35 +80,33 @@ pub fn sweep_scores(all: &[Withheld]) -> [Score; 2] {
     [Score::share(all.iter().map(|w| w.is_told)), Score::share(all.iter().map(|w| w.is_placed))]
 }
 
-fn withhold(effect: &'static Effect, case: &Case) -> Result<Withheld, CheckError> {
-    let scope: Scope = case.answer().truth[0].scope.parse().unwrap_or_default();
-    let mut whole = Inquiry::new(Machine::xt28(), Source::Drawn(Box::new(case.clone())).runs()?);
+fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
+    let mut whole = Inquiry::new(Machine::xt28(), machine.runs()?);
     whole.how_far = false;
-    let blind = whole.clone().without(effect).diagnose(&|_| ());
+    let effects: Vec<_> =
+        facts.iter().filter_map(|fact| Some((fact.effect?, fact.scope))).collect();
+    let forgot = |inquiry: Inquiry, (effect, _): &(&Effect, Scope)| inquiry.without(effect);
+    let blind = effects.iter().fold(whole.clone(), forgot).diagnose(&|_| ());
     let first = blind.causes.first();
-    let is_told = match blind.verdict {
-        Verdict::Unknown => true,
-        Verdict::None => false,
+    let is_told = match (blind.verdict, first) {
+        (Verdict::Unknown, _) => true,
+        (Verdict::None, _) | (_, None) => false,
         // Only a diagnosis that knows the effect can say what looks the same.
-        Verdict::Effect => {
-            first.is_some_and(|named| alike(&whole.diagnose(&|_| ()), effect, named))
+        (Verdict::Effect, Some(named)) => {
+            let full = whole.diagnose(&|_| ());
+            effects.iter().any(|(effect, _)| alike(&full, effect, named))
         }
     };
     let place = blind.places.first();
-    let is_placed = place.is_some_and(|place| {
-        let hears = |generator: &Generator| generator.hears(effect, scope);
-        let mut blocks = Generator::all().into_iter().filter(hears).map(Generator::block);
-        blocks.any(|block| block == place.block) && meet(place.scope, scope)
-    });
+    let shows = |place: &Place| effects.iter().any(|&(effect, on)| shows_at(effect, on, place));
     Ok(Withheld {
-        effect: effect.name,
-        case: case.name().to_owned(),
-        scope: scope.to_string(),
+        case: machine.name(),
+        truth: effects.iter().map(|(effect, on)| format!("{} {on}", effect.name)).collect(),
         verdict: blind.verdict,
         named: first.map(|cause| format!("{} {}", cause.effect.name, cause.scope)),
         place: place.map(|place| format!("{} {}", place.block, place.scope)),
         is_told,
-        is_placed,
+        is_placed: place.is_some_and(shows),
     })
 }
 
@@ -106,6 +117,13 @@ fn alike(whole: &Diagnosis, effect: &Effect, named: &Cause) -> bool {
         causes.any(|cause| cause.class.contains(&other.name))
     };
     of(effect, named.effect) || of(named.effect, effect)
+}
+
+/// Whether `effect` on these wheels shows at `place`.
+fn shows_at(effect: &Effect, on: Scope, place: &Place) -> bool {
+    let hears = |generator: &Generator| generator.hears(effect, on);
+    let mut blocks = Generator::all().into_iter().filter(hears).map(Generator::block);
+    blocks.any(|block| block == place.block) && meet(place.scope, on)
 }
 
 fn meet(a: Scope, b: Scope) -> bool {

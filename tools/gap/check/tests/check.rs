@@ -4,8 +4,9 @@
 use std::path::Path;
 
 use serde_json::Value;
-use xt28_gap_check::{Examination, Options, Report, Source, Truth};
-use xt28_gap_plants::{Case, Cause, Manoeuvre, Scope};
+use xt28_gap_check::{Examination, Options, Report, Source, Truth, sweep};
+use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
+use xt28_machine::Axle;
 
 /// Cases of the fixed set and the seed that they are drawn from. What they are has nothing to do with
 /// how they come out: it is the seed that `xt28 gap check` has by itself.
@@ -58,6 +59,20 @@ fn the_same_cases_come_to_the_same_report() {
     assert_eq!(told.len(), 1);
     assert_eq!(told[0]["truth"][0], "arm-delay all");
     assert_eq!(told[0]["baselines"].as_object().unwrap().len(), 3);
+}
+
+#[test]
+fn what_is_withheld_is_not_named_and_sound_machines_have_nothing_to_withhold() {
+    let gain = Cause::find("valve-gain").unwrap();
+    let late = Case::of(3, gain, Scope::Axle(Axle::Rear)).only(Manoeuvre::ArmStep, 6.0);
+    let sound = Case::draw(4, Kind::Null);
+    let machines = [sound, late].map(|case| Source::Drawn(Box::new(case)));
+    let all = sweep(&machines, &|_| ()).unwrap();
+    assert_eq!(all.len(), 1);
+    assert_eq!(all[0].truth, ["valve-gain rear"]);
+    assert!(!all[0].named.as_ref().unwrap().starts_with("valve-gain"), "{:?}", all[0]);
+    assert_eq!(all[0].place.as_deref(), Some("arms rear"), "{:?}", all[0]);
+    assert!(all[0].is_placed);
 }
 
 #[test]

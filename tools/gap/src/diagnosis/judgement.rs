@@ -5,6 +5,7 @@
 //! our own making (`docs/diagnosis.md`): is there anything beyond tolerances; is it in the catalogue;
 //! which of the catalogue is it.
 
+mod allowed;
 mod places;
 
 use std::collections::BTreeMap;
@@ -12,11 +13,10 @@ use std::collections::BTreeMap;
 use super::candidates::Candidate;
 use super::evidence::Left;
 use super::excitation::not_testable;
-use super::floor::Signal;
-use super::generator::Generator;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
+use allowed::excess;
 use places::places;
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
@@ -27,34 +27,21 @@ const SOMETHING: [f64; 2] = [18.0, 4.0];
 const SECOND: [f64; 2] = [28.0, 5.0];
 const SECOND_SHARE: f64 = 0.02;
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
-const UNKNOWN: [f64; 2] = [1.13, 10.0];
+const UNKNOWN: [f64; 2] = [1.2, 10.0];
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
 /// is not in the catalogue bends them by more.
 const SHIFTS: f64 = 53.0;
+/// The share of the best evidence, nats, by which that rises: what a law leaves of a large gap bends
+/// tolerances too.
+const SHIFTS_SHARE: f64 = 0.01;
 /// The same of the one that goes furthest.
 const SHIFT: f64 = 4.4;
-/// Share of a gap that a right cause may leave: laws of machines differ in their details.
-const LAW_SHARE: f64 = 0.15;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
 const TEMPERATURE_SHARE: f64 = 0.03;
 /// Effects this much less likely than the best, as a factor, are in its class.
 const CLASS: f64 = 0.2;
 /// Causes that are listed.
 const LISTED: usize = 10;
-/// What sound machines leave in roll, in floors: one make half of one, another up to 1.4.
-const ROLL: f64 = 1.3;
-/// Signals with fewer independent samples say nothing of what is left.
-const SAMPLES_MIN: f64 = 8.0;
-/// Effects whose law remembers what no log tells, how the machine came to rest or how much oil stands
-/// where before an accumulator opens, and what a right cause of that kind may leave.
-const REMEMBERS: [&str; 3] = ["seal-stiction", "standstill-drag", "accumulator-gas"];
-const VAGUE_SHARE: f64 = 0.6;
-/// What pushes the wheels where plants differ: between wheel and arm or between wheel and ground. How
-/// the machine stands is no word against it.
-const PUSHES: &str = "rolling-resistance";
-
-/// What lets commands come in bunches: no log says which of a bunch a controller took.
-const BUNCHES: &str = "command-jitter";
 
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug)]
@@ -81,27 +68,14 @@ impl Findings {
     pub fn left_over(&self) -> f64 {
         let squares = || self.shifts.iter().map(|(_, by)| by * by);
         let furthest = squares().fold(0.0, f64::max) / (SHIFT * SHIFT);
-        let bend = furthest.max(squares().sum::<f64>() / SHIFTS);
-        let ratio = |(unbent, after): (&Left, &Left)| {
-            let sound = if after.signal == Signal::Roll { ROLL } else { 1.0 };
-            let allowed = sound + self.law_share(after.generator) * unbent.square.sqrt();
-            if after.samples < SAMPLES_MIN { 0.0 } else { after.steady.sqrt() / allowed }
-        };
-        let left = self.unbent.iter().zip(&self.after).map(ratio).fold(0.0, f64::max);
-        bend.max(left)
-    }
-
-    /// Share of a gap that what is believed may leave with a generator.
-    fn law_share(&self, generator: Generator) -> f64 {
+        let taken = SHIFTS + SHIFTS_SHARE * self.evidence();
+        let bend = furthest.max(squares().sum::<f64>() / taken);
         let pair = self.pair.first().into_iter().flatten();
-        let mut names = self.single.first().into_iter().chain(pair).map(Candidate::name);
-        let is_controller = matches!(generator, Generator::ArmEcu(_) | Generator::SteerEcu(_));
-        let vague = names.any(|name| {
-            REMEMBERS.contains(&name)
-                || (name == PUSHES && generator == Generator::Stance)
-                || (name == BUNCHES && is_controller)
-        });
-        if vague { VAGUE_SHARE } else { LAW_SHARE }
+        let names: Vec<_> =
+            self.single.first().into_iter().chain(pair).map(Candidate::name).collect();
+        let signals = self.unbent.iter().zip(&self.after);
+        let left = signals.map(|(before, after)| excess(&names, before, after)).fold(0.0, f64::max);
+        bend.max(left)
     }
 
     /// Evidence of the best cause, nats.
@@ -227,6 +201,7 @@ mod tests {
     use xt28_machine::{Machine, Wheel};
     use xt28_sim::effects::{Scope, find};
 
+    use super::super::floor::Signal;
     use super::super::generator::Generator;
     use super::super::hypothesis::{Fit, Hypothesis};
     use super::*;
@@ -259,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_quiet_machine_has_nothing() {
-        let diagnosis = judged(1.2, 1.1, vec![candidate("arm-delay", 2.0)]);
+        let diagnosis = judged(0.8, 0.7, vec![candidate("arm-delay", 2.0)]);
         assert_eq!(diagnosis.verdict, Verdict::None);
         assert!(diagnosis.causes.iter().all(|cause| cause.probability < 0.5));
         assert!(diagnosis.probability_none > 0.9);

@@ -1,0 +1,120 @@
+//! What a right answer may leave of each signal: a floor, and a share of the gap that was there.
+
+use super::super::evidence::Left;
+use super::super::floor::Signal;
+use super::super::generator::Generator;
+
+/// Share of a gap that a right cause may leave: laws of one name differ from make to make in their
+/// details.
+const LAW: f64 = 0.03;
+/// What sound machines leave in roll, in floors, and the share of a gap in it: one make half of one,
+/// another up to 1.4, by which wheels carry.
+const ROLL: [f64; 2] = [1.3, 0.15];
+/// The same of the course over ground, which a receiver tells the worse the slower the machine is.
+const COURSE: [f64; 2] = [1.3, LAW];
+/// Signals with fewer independent samples say nothing of what is left.
+const SAMPLES_MIN: f64 = 8.0;
+
+/// A cause whose law is known less well than others', and by how much.
+struct Vague {
+    effect: &'static str,
+    /// Where that shows.
+    shows: fn(Generator, Signal) -> bool,
+    /// Share of a gap that it may leave there.
+    share: f64,
+}
+
+/// The causes that are vague, and why.
+const VAGUE: [Vague; 8] = [
+    // How the machine came to rest, and how much oil stood where before an accumulator opened, is in no
+    // log.
+    Vague { effect: "seal-stiction", shows: anywhere, share: 0.6 },
+    Vague { effect: "standstill-drag", shows: anywhere, share: 0.6 },
+    Vague { effect: "accumulator-gas", shows: anywhere, share: 0.6 },
+    // What load an arm drifts at, and how fast near it, is each make's own.
+    Vague { effect: "unsupported-sag", shows: anywhere, share: 0.15 },
+    // A leak that is believed a little too slow is a large gap in half a minute.
+    Vague { effect: "leakage-drift", shows: anywhere, share: 0.08 },
+    // Where a spool's play lies as a log begins is not known, nor whether it rests in between.
+    Vague { effect: "valve-hysteresis", shows: anywhere, share: 0.25 },
+    // What pushes the wheels acts between wheel and arm on one make, between wheel and ground on another.
+    Vague { effect: "rolling-resistance", shows: weighs, share: 0.35 },
+    // No log says which of a bunch of commands a controller took.
+    Vague { effect: "command-jitter", shows: controls, share: 0.6 },
+];
+
+/// What `after` leaves, by what a right answer, which is one of `names` or both, may leave where `before`
+/// was there; about one at most if it is right.
+pub(super) fn excess(names: &[&str], before: &Left, after: &Left) -> f64 {
+    if after.samples < SAMPLES_MIN {
+        return 0.0;
+    }
+    let vague = VAGUE.iter().filter(|vague| names.contains(&vague.effect));
+    let here = vague.filter(|vague| (vague.shows)(after.generator, after.signal));
+    let [floor, law] = match after.signal {
+        Signal::Roll => ROLL,
+        Signal::TravelCourse => COURSE,
+        _ => [1.0, LAW],
+    };
+    let share = here.map(|vague| vague.share).fold(law, f64::max);
+    // A wheel that lifts jolts arms and attitude; nothing jolts the pressure that a law asks for, and
+    // what is late shows there for moments alone.
+    let jolts = after.signal != Signal::DrivePressure;
+    let left = if jolts { after.steady } else { after.square };
+    left.sqrt() / (floor + share * before.square.sqrt())
+}
+
+fn anywhere(_: Generator, _: Signal) -> bool {
+    true
+}
+
+fn weighs(_: Generator, signal: Signal) -> bool {
+    matches!(signal, Signal::Weight | Signal::WeightX | Signal::WeightY)
+}
+
+fn controls(generator: Generator, _: Signal) -> bool {
+    matches!(generator, Generator::ArmEcu(_) | Generator::SteerEcu(_))
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Wheel;
+
+    use super::*;
+
+    fn left(generator: Generator, signal: Signal, floors: f64, steady: f64) -> Left {
+        let [square, steady] = [floors, steady].map(|floors| floors * floors);
+        Left { generator, signal, square, steady, samples: 100.0 }
+    }
+
+    #[test]
+    fn a_vague_law_may_leave_more_where_it_is_vague() {
+        let of = |name: &str, signal: Signal| {
+            let at = |floors| left(Generator::Stance, signal, floors, floors);
+            excess(&[name], &at(10.0), &at(4.0))
+        };
+        assert!(of("payload", Signal::Weight) > 2.0);
+        assert!(of("seal-stiction", Signal::Weight) < 1.0);
+        assert!(of("rolling-resistance", Signal::Weight) < 1.0);
+        assert!(of("rolling-resistance", Signal::Pitch) > 2.0);
+    }
+
+    #[test]
+    fn jolts_are_overlooked_where_there_can_be_jolts() {
+        let of = |generator, signal| {
+            let before = left(generator, signal, 10.0, 10.0);
+            excess(&["throttle-delay"], &before, &left(generator, signal, 4.0, 0.5))
+        };
+        assert!(of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke) < 0.5);
+        assert!(of(Generator::Drive, Signal::DrivePressure) > 2.0);
+    }
+
+    #[test]
+    fn every_vague_cause_is_in_the_catalogue_and_few_samples_say_nothing() {
+        for vague in VAGUE {
+            assert!(xt28_sim::effects::find(vague.effect).is_some(), "{}", vague.effect);
+        }
+        let few = Left { samples: 7.0, ..left(Generator::Drive, Signal::DriveForce, 50.0, 50.0) };
+        assert!(excess(&[], &few, &few).abs() < f64::EPSILON);
+    }
+}

@@ -115,14 +115,14 @@ impl Report {
         writeln!(to, "\nwhat is wrong withheld from the catalogue")?;
         writeln!(to, "{:<32} {}", "unknown, or its class", cell(&told))?;
         writeln!(to, "{:<32} {}", "at the right place", cell(&placed))?;
-        writeln!(to, "{:<30} {:<8} {:<30} parts most", "without", "said", "likeliest")?;
+        writeln!(to, "{:<36} {:<8} {:<30} parts most", "without", "said", "likeliest")?;
         for w in &self.sweep {
             let verdict = format!("{:?}", w.verdict).to_lowercase();
             let [named, place] = [&w.named, &w.place].map(|t| t.as_deref().unwrap_or("-"));
             let marks =
                 [(w.is_told, "  <- named falsely or missed"), (w.is_placed, "  <- wrong place")];
             let marks = marks.map(|(fine, mark)| if fine { "" } else { mark }).concat();
-            writeln!(to, "{:<30} {verdict:<8} {named:<30} {place}{marks}", w.truth.join(" + "))?;
+            writeln!(to, "{:<36} {verdict:<8} {named:<30} {place}{marks}", w.truth.join(" + "))?;
         }
         Ok(())
     }

@@ -25,7 +25,7 @@ const SOMETHING: [f64; 2] = [18.0, 4.0];
 /// rises where another law of the first could explain all of the second's: what a large cause leaves,
 /// another law takes for a second one.
 const SECOND: [f64; 2] = [28.0, 5.0];
-const SECOND_SHARE: f64 = 0.02;
+const SECOND_SHARE: f64 = 0.08;
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
 const UNKNOWN: [f64; 2] = [1.2, 10.0];
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what

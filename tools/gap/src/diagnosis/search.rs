@@ -14,6 +14,10 @@ const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
 const FURTHER: [f64; 12] = [1.5, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 18.0, 21.0, 25.0, 30.0];
 /// Grid of a parameter beside a fraction of another, in tolerances.
 const BESIDE: [f64; 3] = [10.0, 20.0, 40.0];
+/// Amounts beside which a parameter is looked at that does nothing without one, and how far it goes then,
+/// in tolerances: a drift, and the load below which it sets in.
+const AMOUNTS: [f64; 2] = [3.0, 6.0];
+const THRESHOLDS: [f64; 4] = [-4.0, -1.5, 1.5, 4.0];
 /// Instants of every run from which an effect is looked for, s; what sets in between is seen at one.
 const LOOKED_FROM_S: [f64; 4] = [0.0, 6.0, 12.0, 18.0];
 /// What an effect that sets in late must gain beyond one that was always there, nats.
@@ -131,8 +135,34 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
             grid.extend(beside(parameters, k, &values));
             grid.push(values);
         }
+        for values in with_amounts(parameters, k) {
+            if !grid.contains(&values) {
+                grid.push(values);
+            }
+        }
     }
     grid
+}
+
+/// A parameter that can go both ways, beside amounts of the other one if that is neutral at none. Only of
+/// two: four that are sought from everywhere bend to anything (a gas spring to a leak).
+fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
+    let p = &parameters[k];
+    let goes_both_ways = parameters.len() == 2 && p.range[0] < p.neutral && p.neutral < p.range[1];
+    let is_amount = |(_, amount): &(usize, &Parameter)| amount.neutral == amount.range[0];
+    let at =
+        |p: &Parameter, reach: f64| (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
+    let pairs = |(j, amount): (usize, &Parameter)| {
+        let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
+        let values = |(much, far)| {
+            let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+            (values[j], values[k]) = (at(amount, much), at(p, far));
+            values
+        };
+        reaches.map(values).collect::<Vec<_>>()
+    };
+    let amounts = parameters.iter().enumerate().filter(is_amount);
+    if goes_both_ways { amounts.flat_map(pairs).collect() } else { Vec::new() }
 }
 
 /// What can only be positive may be a fraction of itself, far beyond its tolerances: a tyre's stiffness.
@@ -169,7 +199,9 @@ mod tests {
 
     #[test]
     fn the_grid_stays_in_range_and_names_nothing_twice() {
-        for name in ["arm-delay", "speed-asymmetry", "payload", "pump-flow-limit"] {
+        for name in
+            ["arm-delay", "speed-asymmetry", "payload", "pump-flow-limit", "unsupported-sag"]
+        {
             let p = find(name).unwrap().parameters;
             let grid = grid(p);
             assert!(grid.len() >= 2, "{name}");
@@ -180,6 +212,8 @@ mod tests {
                 }
             }
         }
+        let sag = grid(find("unsupported-sag").unwrap().parameters);
+        assert!(sag.iter().any(|values| values[0] > 0.0 && values[1] > 0.0));
         assert_eq!(Scope::ALL.len(), Hypothesis::of(&[find("arm-delay").unwrap()]).len());
     }
 }

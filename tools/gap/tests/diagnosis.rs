@@ -102,66 +102,48 @@ fn fitted_after(
     Some((best.log_evidence, best.values.clone()))
 }
 
+/// The same where the evidence is more than `nats`, and each value as near to what was put in as is said.
+fn finds(effect: &str, scope: Scope, run: &str, overlay: &str, nats: f64, sizes: &[[f64; 2]]) {
+    let Some((evidence, values)) = fitted(effect, scope, run, overlay) else { return };
+    assert!(evidence > nats, "{evidence}");
+    for (value, [put_in, within]) in values.iter().zip(sizes) {
+        assert!((value - put_in).abs() < *within, "{values:?}");
+    }
+}
+
 #[test]
 fn a_delay_put_into_our_plant_is_found_with_its_size() {
     let overlay = "[[effect]]\nname = \"arm-delay\"\nscope = \"front\"\ndelay_s = 0.2";
     let front = Scope::Axle(xt28_machine::Axle::Front);
-    let Some((evidence, values)) = fitted("arm-delay", front, "run-1-arm_step.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 20.0, "{evidence}");
-    assert!((values[0] - 0.2).abs() < 0.04, "{values:?}");
+    finds("arm-delay", front, "run-1-arm_step.log.gz", overlay, 20.0, &[[0.2, 0.04]]);
 }
 
 #[test]
 fn a_late_throttle_put_into_our_plant_is_found_with_its_size() {
     let overlay = "[[effect]]\nname = \"throttle-delay\"\ndelay_s = 0.3";
-    let Some((evidence, values)) =
-        fitted("throttle-delay", Scope::All, "run-4-straight.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 20.0, "{evidence}");
-    assert!((values[0] - 0.3).abs() < 0.06, "{values:?}");
+    finds("throttle-delay", Scope::All, "run-4-straight.log.gz", overlay, 20.0, &[[0.3, 0.06]]);
 }
 
 #[test]
 fn late_steering_is_told_from_slow_steering() {
     let overlay = "[[effect]]\nname = \"steer-delay\"\ndelay_s = 0.3";
-    let Some((evidence, values)) =
-        fitted("steer-delay", Scope::All, "run-3-s_turn.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 20.0, "{evidence}");
-    assert!((values[0] - 0.3).abs() < 0.06, "{values:?}");
+    finds("steer-delay", Scope::All, "run-3-s_turn.log.gz", overlay, 20.0, &[[0.3, 0.06]]);
 }
 
 #[test]
 fn a_weak_and_late_follower_is_found_in_the_rear_controller() {
     let overlay = "[[effect]]\nname = \"rear-follower-lag\"\ntime_constant_s = 0.8\n\
                    ratio_factor = 0.75";
-    let Some((evidence, values)) =
-        fitted("rear-follower-lag", Scope::All, "run-3-s_turn.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 20.0, "{evidence}");
-    assert!((values[0] - 0.8).abs() < 0.1 && (values[1] - 0.75).abs() < 0.03, "{values:?}");
+    let sizes = [[0.8, 0.1], [0.75, 0.03]];
+    finds("rear-follower-lag", Scope::All, "run-3-s_turn.log.gz", overlay, 20.0, &sizes);
 }
 
 #[test]
 fn the_wheel_that_misreads_is_told_by_the_others() {
     let middle_right = Scope::Wheel(Wheel::Mr);
     let overlay = "[[effect]]\nname = \"wheel-speed-scale\"\nscope = \"MR\"\nfactor = 0.93";
-    let Some((evidence, values)) =
-        fitted("wheel-speed-scale", middle_right, "run-4-straight.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 10.0, "{evidence}");
-    assert!((values[0] - 0.93).abs() < 0.015, "{values:?}");
+    let run = "run-4-straight.log.gz";
+    finds("wheel-speed-scale", middle_right, run, overlay, 10.0, &[[0.93, 0.015]]);
 }
 
 /// At rest rolling resistance holds a part of what the pumps would have to.
@@ -169,13 +151,8 @@ fn the_wheel_that_misreads_is_told_by_the_others() {
 fn a_slope_under_a_machine_that_stands_is_found_with_its_size() {
     let overlay = "[[effect]]\nname = \"terrain-slope\"\ngrade_x_rad = 0.03\n\
                    grade_y_rad = 0.02";
-    let Some((evidence, values)) =
-        fitted("terrain-slope", Scope::All, "run-1-arm_step.log.gz", overlay)
-    else {
-        return;
-    };
-    assert!(evidence > 10.0, "{evidence}");
-    assert!((values[0] - 0.03).abs() < 0.004 && (values[1] - 0.02).abs() < 0.004, "{values:?}");
+    let sizes = [[0.03, 0.004], [0.02, 0.004]];
+    finds("terrain-slope", Scope::All, "run-1-arm_step.log.gz", overlay, 10.0, &sizes);
 }
 
 fn random_bools(len: usize, share: f64) -> Vec<bool> {

@@ -54,6 +54,11 @@ impl Check {
             Some(folder) => Source::in_folder(folder)?,
             None => Source::drawn(self.cases, self.seed),
         };
+        let withheld = match &self.set {
+            _ if !self.sweep => Vec::new(),
+            Some(_) => sources.clone(),
+            None => one_of_each(self.seed),
+        };
         let examination = Examination::sealed(sources, self.seed)?;
         eprintln!("answers sealed as {}", examination.seal());
         if let Some(json) = &self.json {
@@ -77,12 +82,8 @@ impl Check {
         }
         let mut report = Report::new(&examination, judged);
         if self.sweep {
-            let machines = match &self.set {
-                Some(folder) => Source::in_folder(folder)?,
-                None => one_of_each(self.seed),
-            };
             let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
-            report = report.with_sweep(sweep(&machines, &told)?);
+            report = report.with_sweep(sweep(&withheld, &told)?);
         }
         print!("{}", report.text());
         if let Some(json) = &self.json {

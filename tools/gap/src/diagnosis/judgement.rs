@@ -34,7 +34,7 @@ const SHIFTS: f64 = 53.0;
 /// The share of the best evidence, nats, by which that rises: what a law leaves of a large gap bends
 /// tolerances too.
 const SHIFTS_SHARE: f64 = 0.01;
-/// The same of the one that goes furthest.
+/// How far the one that goes furthest may go, by its own.
 const SHIFT: f64 = 4.4;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
 const TEMPERATURE_SHARE: f64 = 0.03;

@@ -144,25 +144,23 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     grid
 }
 
-/// A parameter that can go both ways, beside amounts of the other one if that is neutral at none. Only of
-/// two: four that are sought from everywhere bend to anything (a gas spring to a leak).
+/// One of two parameters that can go both ways, beside amounts of the other if that is neutral at none.
+/// Only of two: four that are sought from everywhere bend to anything (a gas spring to a leak).
 fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
-    let p = &parameters[k];
-    let goes_both_ways = parameters.len() == 2 && p.range[0] < p.neutral && p.neutral < p.range[1];
-    let is_amount = |(_, amount): &(usize, &Parameter)| amount.neutral == amount.range[0];
+    let [_, _] = parameters else { return Vec::new() };
+    let (p, amount) = (&parameters[k], &parameters[1 - k]);
+    if p.range.contains(&p.neutral) || amount.neutral != amount.range[0] {
+        return Vec::new();
+    }
     let at =
         |p: &Parameter, reach: f64| (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
-    let pairs = |(j, amount): (usize, &Parameter)| {
-        let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
-        let values = |(much, far)| {
-            let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
-            (values[j], values[k]) = (at(amount, much), at(p, far));
-            values
-        };
-        reaches.map(values).collect::<Vec<_>>()
+    let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
+    let values = |(much, far)| {
+        let mut values = vec![at(amount, much); 2];
+        values[k] = at(p, far);
+        values
     };
-    let amounts = parameters.iter().enumerate().filter(is_amount);
-    if goes_both_ways { amounts.flat_map(pairs).collect() } else { Vec::new() }
+    reaches.map(values).collect()
 }
 
 /// What can only be positive may be a fraction of itself, far beyond its tolerances: a tyre's stiffness.

@@ -26,6 +26,25 @@ pub struct Belief<'e> {
     pub from_s: f64,
 }
 
+/// A belief beside its base, as one run of a generator has it: `before` until `from_s`, `effects` after.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course<'e> {
+    /// Effects before [`Self::from_s`].
+    pub(super) before: &'e Effects,
+    /// From when on the others hold, s.
+    pub(super) from_s: f64,
+    /// Effects from then on.
+    pub(super) effects: &'e Effects,
+    /// Nothing before this is looked at, as `before` set in here, s.
+    pub(super) since_s: f64,
+}
+
+impl<'e> From<&'e Effects> for Course<'e> {
+    fn from(effects: &'e Effects) -> Self {
+        Self { before: effects, from_s: 0.0, effects, since_s: 0.0 }
+    }
+}
+
 impl<'e> From<&'e Effects> for Belief<'e> {
     fn from(effects: &'e Effects) -> Self {
         Self { effects, from_s: 0.0 }

@@ -21,6 +21,9 @@ const BEGINNING_MIN: f64 = 6.0;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
 
+/// The widest and the finest step in which a beginning is looked for, s.
+const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.1];
+
 /// A fitted hypothesis with what it is worth on both sets of runs.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -156,13 +159,30 @@ impl<'a> Docket<'a> {
         if !is_late && gain < whole + BEGINNING_HINT {
             return None;
         }
-        let late = hypothesis.refit(&self.fit, at_s, &found.fit.values);
-        let near = [-1.0, -0.5, 0.0, 0.5, 1.0].map(|by| at_s + by);
-        let gains = near.map(|at_s| (hypothesis.gain(&self.fit, at_s, &late.values), at_s));
-        let (_, at_s) = gains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let late = self.weighed(hypothesis.refit(&self.fit, at_s, &late.values));
+        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at_s, &found.fit.values)));
         let least = if is_late { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
+    }
+
+    /// The same with its beginning where it explains most, its values anew after every step there: a leak
+    /// that begins later and one that is smaller look alike a second beside it.
+    fn begun(&self, mut fit: Fit) -> Fit {
+        let mut step_s = BEGINNING_STEPS_S[0];
+        while step_s >= BEGINNING_STEPS_S[1] {
+            let hypothesis = fit.hypothesis;
+            let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);
+            let here = gain(fit.from_s).0;
+            let near = [fit.from_s - step_s, fit.from_s + step_s].map(|at_s| gain(at_s.max(0.0)));
+            let [before, after] = near;
+            let (there, at_s) = if before.0 > after.0 { before } else { after };
+            let moved = hypothesis.refit(&self.fit, at_s, &fit.values);
+            if there > here && moved.log_evidence > fit.log_evidence {
+                fit = moved;
+            } else {
+                step_s *= 0.5;
+            }
+        }
+        fit
     }
 }
 

@@ -22,6 +22,7 @@ use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Scope};
 
+use super::belief::Course;
 use super::floor::Signal;
 use super::signals::{Samples, Signals};
 pub(super) use driving::PRESSURE_AT_TORQUE_MAX_PA;
@@ -136,19 +137,20 @@ impl Generator {
     /// Its residuals on one run, in units of their floors.
     #[must_use]
     pub fn residuals(self, s: &Signals, machine: &Machine, effects: &Effects) -> Vec<Residual> {
-        self.residuals_after(s, machine, (effects, 0.0, effects))
+        self.residuals_over(s, machine, effects.into())
     }
 
-    /// The same where `before` held until `from_s`, as far as its own memory reaches back over that
-    /// instant: a reading that jumps leaves an arm's stroke in doubt for seconds. What is before the
-    /// instant is as if `effects` had always been there.
+    /// The same over a `course` of effects, as far as its own memory reaches back over the instant at which
+    /// they set in: a reading that jumps leaves an arm's stroke in doubt for seconds. What is before
+    /// the instant is as if they had always been there.
     #[must_use]
-    pub(super) fn residuals_after(
+    pub(super) fn residuals_over(
         self,
         s: &Signals,
         machine: &Machine,
-        (before, from_s, effects): (&Effects, f64, &Effects),
+        course: Course<'_>,
     ) -> Vec<Residual> {
+        let effects = course.effects;
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
             signal,
@@ -161,7 +163,7 @@ impl Generator {
         };
         match self {
             Self::ArmStroke(w) => {
-                let error = arms::stroke_error_m(s, machine, (before, from_s, effects), w);
+                let error = arms::stroke_error_m(s, machine, course, w);
                 vec![one(Signal::Stroke, error)]
             }
             Self::ArmEcu(w) => {

@@ -1,9 +1,8 @@
 //! Residuals of one generator over all runs, in groups that share one unknown scale.
 
 use xt28_machine::Machine;
-use xt28_sim::Effects;
 
-use crate::diagnosis::belief::Belief;
+use crate::diagnosis::belief::{Base, Belief, Course};
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::signals::Signals;
@@ -34,31 +33,32 @@ pub(super) struct Stack {
     /// All groups.
     pub(super) groups: Vec<Group>,
     /// What they were made with.
-    base: Effects,
+    base: Base,
     mask: Vec<bool>,
 }
 
 impl Stack {
-    /// Residuals of `generator` on `runs`, each from `since_s` on.
+    /// Residuals of `generator` on `runs`, each from where `base` set in.
     #[allow(clippy::cast_precision_loss)]
     pub(super) fn new(
         generator: Generator,
         runs: &[Signals],
         machine: &Machine,
-        effects: &Effects,
-        since_s: f64,
+        base: &Base,
     ) -> Self {
+        let (effects, since_s) = (&base.effects, base.since_s);
+        let course = Course { since_s, ..effects.into() };
         let mut stack = Self {
             generator,
             values: Vec::new(),
             group: Vec::new(),
             at_s: Vec::new(),
             groups: Vec::new(),
-            base: effects.clone(),
+            base: base.clone(),
             mask: Vec::new(),
         };
         for run in runs {
-            for residual in generator.residuals(run, machine, effects) {
+            for residual in generator.residuals_over(run, machine, course) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
@@ -85,11 +85,12 @@ impl Stack {
         machine: &Machine,
         Belief { effects, from_s }: Belief<'_>,
     ) -> Vec<f64> {
-        let both = (&self.base, from_s, effects);
+        let Base { effects: before, since_s } = &self.base;
+        let course = Course { before, from_s, effects, since_s: *since_s };
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
-            for residual in self.generator.residuals_after(run, machine, both) {
+            for residual in self.generator.residuals_over(run, machine, course) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {

@@ -51,10 +51,11 @@ impl Watch {
         generator: Generator,
         runs: &[Signals],
         machine: &Machine,
-        Base { effects: base, since_s }: &Base,
+        base: &Base,
         knobs: &[Knob],
     ) -> Self {
-        let stack = Stack::new(generator, runs, machine, base, *since_s);
+        let stack = Stack::new(generator, runs, machine, base);
+        let base = &base.effects;
         let slope = |knob: &Knob| {
             if let Knob::Effect(effect, _, scope) = knob
                 && !generator.hears(effect, *scope)

@@ -5,6 +5,7 @@ use xt28_sim::effects::{ArmEffects, SealStiction, WheelEffects};
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
+use crate::diagnosis::belief::Course;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time over which the block forgets where it parted from the machine, s. Long enough that a creep of
@@ -19,6 +20,8 @@ pub(super) struct ArmDrive<'a> {
     sensors: WheelEffects,
     /// Sensors before a sample, where they were others.
     before: Option<(usize, WheelEffects)>,
+    /// Samples at which effects set in, so that the oil begins anew.
+    anew: [usize; 2],
     loads: Loads,
     area_bore_m2: f64,
 }
@@ -39,17 +42,21 @@ impl<'a> ArmDrive<'a> {
             arm: Arm::new(machine, &smooth),
             sensors: effects.wheels[wheel],
             before: None,
+            anew: [0; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
             area_bore_m2: machine.arms.area_bore_m2,
         }
     }
 
-    /// The same, with the sensors as `before` had them until `from_s` into the run: a reading that jumps
-    /// is followed.
-    pub(super) fn after(mut self, before: &Effects, from_s: f64) -> Self {
+    /// The same over a `course` of effects. Sensors are those of before until the others set in: a reading
+    /// that jumps is followed. Oil begins anew where effects set in, as it then is what it was: a leak that
+    /// had always been there would have emptied it.
+    pub(super) fn over(mut self, course: Course<'_>) -> Self {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let from = (from_s / DT_S).round().max(0.0) as usize;
-        self.before = (from > 0).then_some((from, before.wheels[self.wheel]));
+        let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
+        let from = sample(course.from_s);
+        self.before = (from > 0).then_some((from, course.before.wheels[self.wheel]));
+        self.anew = [from, sample(course.since_s)];
         self
     }
 
@@ -80,6 +87,10 @@ impl<'a> ArmDrive<'a> {
         let mut error_m = 0.0;
         let step = |i: usize| {
             let (input, s) = (self.input(i), self.sensors(i));
+            if self.anew.contains(&i) {
+                state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
+                seen_n = self.loads.reading_n[i];
+            }
             let made_n = self.arm.oil_force_n(&state, &input.motion);
             let stiffness_n_m = self.stiffness_n_m(&state, &input.motion, made_n);
             seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(i, made_n);

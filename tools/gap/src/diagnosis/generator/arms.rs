@@ -1,12 +1,12 @@
 //! Arm hydraulics on measured inputs: the valve's opening and the cylinder's load in, its stroke out.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::Effects;
 use xt28_sim::effects::SealStiction;
 
 use super::arm_drive::ArmDrive;
 use super::loads::KEPT;
 use super::pump;
+use crate::diagnosis::belief::Course;
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// Stroke rate over which friction changes its sign, m/s: what 0.2 s of a reading in whole
@@ -18,15 +18,15 @@ const SLIDING_M_S: f64 = 0.004;
 /// The block is driven with the opening that the ECU asked for, the load and the motion that were
 /// measured. It says which load the oil then makes and the ECU's filter shows; where that is another
 /// than the one read, the cylinder would stand elsewhere by what its lock gives way for the difference.
-/// Sensors are those of `before` until `from_s`.
 #[must_use]
 pub(super) fn stroke_error_m(
     signals: &Signals,
     machine: &Machine,
-    (before, from_s, effects): (&Effects, f64, &Effects),
+    course: Course<'_>,
     wheel: Wheel,
 ) -> Samples {
-    let drive = ArmDrive::new(signals, machine, effects, wheel).after(before, from_s);
+    let effects = course.effects;
+    let drive = ArmDrive::new(signals, machine, effects, wheel).over(course);
     let share = pump::flow_share(signals, machine, effects);
     let (errors, softness) = drive.stroke_errors_m(&share);
     let stiction = &effects.arms[wheel].stiction;

@@ -16,6 +16,8 @@ use super::signals::Signals;
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
 /// How many of the leading hypotheses are asked when they set in.
 const ASKED: usize = 6;
+/// Share of the best one's score above which another is sought to the floor of its valley.
+const NEAR: f64 = 0.5;
 /// What a beginning must gain beyond the freedom to choose it, nats.
 const BEGINNING_MIN: f64 = 6.0;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
@@ -81,6 +83,11 @@ impl<'a> Docket<'a> {
         let fits = search(&self.fit, catalogue);
         let mut all: Vec<Candidate> = fits.into_par_iter().map(|fit| self.weighed(fit)).collect();
         rank(&mut all);
+        let near = all.first().map_or(0.0, |best| NEAR * best.score());
+        let settled = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
+        let settled: Vec<Candidate> = settled.map(|near| self.settled(near)).collect();
+        settled.into_iter().for_each(|candidate| settle(&mut all, candidate));
+        rank(&mut all);
         let asked = all.len().min(ASKED);
         let late: Vec<Candidate> =
             all[..asked].par_iter().filter_map(|candidate| self.set_in(candidate)).collect();
@@ -136,6 +143,10 @@ impl<'a> Docket<'a> {
             effects = fit.hypothesis.applied(&effects, &fit.values);
         }
         (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
+    }
+
+    fn settled(&self, Candidate { fit, .. }: &Candidate) -> Candidate {
+        self.weighed(fit.hypothesis.settled(&self.fit, fit.clone()))
     }
 
     fn weighed(&self, fit: Fit) -> Candidate {

@@ -163,8 +163,7 @@ impl Generator {
         };
         match self {
             Self::ArmStroke(w) => {
-                let error = arms::stroke_error_m(s, machine, course, w);
-                vec![one(Signal::Stroke, error)]
+                vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, course, w))]
             }
             Self::ArmEcu(w) => {
                 let error = position_control::arm_opening_error(s, machine, effects, w);

@@ -1,5 +1,6 @@
 //! One effect at one scope, fitted to the logs.
 
+mod curvature;
 mod descent;
 mod spread;
 
@@ -9,7 +10,7 @@ use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
 use super::belief::Belief;
 use super::evidence::Evidence;
 use super::generator::Generator;
-use descent::descend;
+use descent::{End, descend, follow_valley};
 use spread::Spread;
 
 /// Beginnings that an effect may have, as many as can be told apart in a run.
@@ -87,6 +88,19 @@ impl Hypothesis {
         let cost = |values: &[f64]| self.cost(evidence, from_s, values);
         let best = descend(&cost, values.to_vec(), self.effect.parameters);
         self.weighed(evidence, from_s, best.at, best.cost)
+    }
+
+    /// The same hypothesis at the floor of its valley: sought further, where parameters make up for one
+    /// another.
+    #[must_use]
+    pub(super) fn settled(&self, evidence: &Evidence<'_>, fit: Fit) -> Fit {
+        if fit.values.len() == 1 {
+            return fit;
+        }
+        let cost = |values: &[f64]| self.cost(evidence, fit.from_s, values);
+        let end = End { cost: cost(&fit.values), at: fit.values };
+        let best = follow_valley(&cost, end, self.effect.parameters);
+        self.weighed(evidence, fit.from_s, best.at, best.cost)
     }
 
     /// How much better `evidence` is explained with `values`: half the cost that goes.

@@ -144,20 +144,19 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     grid
 }
 
-/// One of two parameters that can go both ways, beside amounts of the other if that is neutral at none.
-/// Only of two: four that are sought from everywhere bend to anything (a gas spring to a leak).
+/// A parameter that can go both ways beside amounts of one that is neutral at none, where there is such.
 fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
-    let [_, _] = parameters else { return Vec::new() };
-    let (p, amount) = (&parameters[k], &parameters[1 - k]);
-    if p.range.contains(&p.neutral) || amount.neutral != amount.range[0] {
+    let amount = parameters.iter().position(|p| p.neutral == p.range[0]);
+    let (p, Some(j)) = (&parameters[k], amount) else { return Vec::new() };
+    if p.range.contains(&p.neutral) {
         return Vec::new();
     }
     let at =
         |p: &Parameter, reach: f64| (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
     let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
     let values = |(much, far)| {
-        let mut values = vec![at(amount, much); 2];
-        values[k] = at(p, far);
+        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        (values[j], values[k]) = (at(&parameters[j], much), at(p, far));
         values
     };
     reaches.map(values).collect()

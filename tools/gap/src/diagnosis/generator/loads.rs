@@ -12,6 +12,9 @@ pub(super) const KEPT: f64 = 0.940_88;
 /// a reading in whole kilopascals leaves open, below any chamber that is full).
 const DRAINED: f64 = 0.8;
 
+/// Stroke rate at which a damper twice the nominal one makes a thousandth of a load, m/s.
+const SLOW_M_S: f64 = 0.005;
+
 /// How long before and after a reading at the end of its scale the filter cannot be undone, samples:
 /// two readings at the slowest rate.
 const OFF_SCALE_SAMPLES: usize = 20;
@@ -23,7 +26,7 @@ pub(super) struct Loads {
     /// With the filter undone, N.
     pub(super) oil_n: Samples,
     /// Whether a chamber was drained: the piston ran ahead of its oil, so that what came in came past
-    /// the valve; or whether its sensor was off its scale. Empty where no pressures are logged.
+    /// the valve, and has not come to rest since; or whether its sensor was off its scale. Empty where no pressures are logged.
     pub(super) is_drained: Vec<bool>,
 }
 
@@ -56,7 +59,12 @@ impl Loads {
             let least = bore.min((bore - bias_pa) / scale);
             least < bore_pa || *rod < rod_pa || is_off_scale(signals, wheel, i)
         };
-        let is_drained = each.map(drained).collect();
+        let mut is_drained: Vec<bool> = each.map(drained).collect();
+        // Until the rod is slow again nobody knows how much of the load is the damper's.
+        let rate_m_s = &signals.stroke_rate_m_s[wheel];
+        for i in 1..is_drained.len() {
+            is_drained[i] |= is_drained[i - 1] && rate_m_s[i].abs() > SLOW_M_S;
+        }
         let oil_n = undone(&reading_n, is_new);
         Self { reading_n, oil_n, is_drained }
     }

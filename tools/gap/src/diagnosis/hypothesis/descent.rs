@@ -60,6 +60,7 @@ pub(super) fn follow_valley(
     end
 }
 
+/// Rounds of parabolas along `directions`, which turn to where the last round went.
 fn powell(
     cost: &dyn Fn(&[f64]) -> f64,
     mut end: End,
@@ -159,6 +160,26 @@ mod tests {
         };
         let end = descend(&cost, vec![1.0, 1.0], p);
         assert!(end.cost < 0.1, "{end:?}");
+    }
+
+    /// Four that make up for one another but for a thousandth, jolted by a nat: a gas spring's.
+    #[test]
+    fn it_follows_a_valley_across_its_axes() {
+        let p = find("accumulator-gas").unwrap().parameters;
+        let best = [0.9, 2.4e6, 0.6e-3, 1.5];
+        let cost = |v: &[f64]| {
+            let u: Vec<f64> = (0..4).map(|k| (v[k] - best[k]) / p[k].tolerance).collect();
+            let across = u[0] + u[1] - 0.8 * u[2] + 0.3 * u[3] * u[3] + 0.6 * u[3];
+            let jolt = (1e4 * across).sin();
+            3e4 * across.powi(2)
+                + 40.0 * (u[0] - u[1]).powi(2)
+                + 20.0 * u[2].powi(2)
+                + 3.0 * u[3].powi(2)
+                + jolt
+        };
+        let rough = descend(&cost, vec![1.0, 1.5e6, 1.0e-3, 1.3], p);
+        let end = follow_valley(&cost, rough.clone(), p);
+        assert!(end.cost < 2.0 && rough.cost > 10.0, "{rough:?} {end:?}");
     }
 
     #[test]

@@ -1,0 +1,51 @@
+//! What the arms of foreign machines say of their own fault, without the rest of the machine.
+
+use xt28_gap::diagnosis::{Evidence, Fit, Generator, Hypothesis, Knob, Signals};
+use xt28_gap_check::Source;
+use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
+use xt28_machine::{Machine, Side, Wheel};
+use xt28_sim::Effects;
+use xt28_sim::effects::{self, find};
+
+fn signals(case: Case) -> Vec<Signals> {
+    let runs = Source::Drawn(Box::new(case)).runs().expect("a case that is drawn has runs");
+    runs.into_iter().map(|run| run.signals).collect()
+}
+
+/// `effect` at `scope` on those wheels' arms, sought from `start` for each instant at which it may set in.
+fn fits(
+    runs: &[Signals],
+    (effect, scope): (&str, effects::Scope),
+    start: f64,
+    from_s: &[f64],
+) -> Vec<Fit> {
+    let hypothesis = Hypothesis { effect: find(effect).unwrap(), scope };
+    let arms = Wheel::ALL.into_iter().filter(|wheel| scope.contains(*wheel));
+    let watched = arms.map(Generator::ArmStroke).collect();
+    let machine = Machine::xt28();
+    let evidence = Evidence::watching(watched, runs, &machine, Effects::default(), &Knob::all());
+    from_s.iter().map(|at_s| hypothesis.refit(&evidence, *at_s, &[start])).collect()
+}
+
+#[test]
+fn a_leak_that_sets_in_late_is_as_large_as_it_is_and_begins_when_it_does() {
+    let (began_s, size_m_s) = (9.7, 0.006_243_5);
+    let leak = Cause::find("leakage-drift").unwrap();
+    let case = Case::of(901, leak, Scope::Side(Side::Left)).beginning_at(began_s);
+    let runs = signals(case.only(Manoeuvre::ArmStep, 24.0));
+    let left = effects::Scope::Side(Side::Left);
+    let around = [began_s - 0.5, began_s, began_s + 0.5];
+    let fits = fits(&runs, ("leakage-drift", left), 0.004, &around);
+    let [early, right, late] = &fits[..] else { panic!("three instants") };
+    assert!((right.values[0] / size_m_s - 1.0).abs() < 0.05, "{right:?}");
+    assert!(right.log_evidence > early.log_evidence + 5.0, "{early:?}");
+    assert!(right.log_evidence > late.log_evidence + 5.0, "{late:?}");
+}
+
+#[test]
+fn a_damper_shows_on_a_light_arm_that_lifts_its_wheel() {
+    let runs = signals(Case::draw(50_981_774, Kind::Single).only(Manoeuvre::ArmStep, 32.0));
+    let fits = fits(&runs, ("lock-damping", effects::Scope::Wheel(Wheel::Mr)), 2.0, &[0.0]);
+    assert!(fits[0].log_evidence > 20.0, "{fits:?}");
+    assert!((2.5..5.5).contains(&fits[0].values[0]), "{fits:?}");
+}

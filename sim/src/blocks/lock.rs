@@ -38,12 +38,13 @@ impl Lock {
     pub fn spring(&self, compression_m: f64) -> [f64; 2] {
         let force_n = self.stiffness_n_m * compression_m;
         match &self.gas {
-            None => [force_n, self.stiffness_n_m],
-            Some((share, accumulator)) => {
+            // A hanging arm draws on the rod side, where no gas is.
+            Some((share, accumulator)) if compression_m > 0.0 => {
                 let [gas_n, gas_n_m] = accumulator.spring(compression_m);
                 let blend = |lock: f64, gas: f64| lock + share * (gas - lock);
                 [blend(force_n, gas_n), blend(self.stiffness_n_m, gas_n_m)]
             }
+            _ => [force_n, self.stiffness_n_m],
         }
     }
 
@@ -104,6 +105,15 @@ mod tests {
         let absolute = |force_n: f64| (force_n + 5e5 * 0.00589) / 0.00785 + 1.013e5;
         let ratio = (absolute(83e3) / absolute(31e3)).powf(1.0 + 1.0 / 1.3);
         assert!((at(83e3) / at(31e3) / ratio - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_hanging_arm_draws_on_the_linear_lock() {
+        let (linear, gas) = (with_share(0.0), with_share(1.0));
+        for compression_m in [-1e-2, -1e-6, 0.0] {
+            assert_eq!(gas.spring(compression_m), linear.spring(compression_m));
+        }
+        assert!(gas.spring(1e-6)[1] > 2.0 * linear.spring(1e-6)[1]);
     }
 
     #[test]

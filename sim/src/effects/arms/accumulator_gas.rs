@@ -6,7 +6,8 @@ use crate::effects::{Block, Effect, Parameter, Slot};
 /// as the linear lock where an arm carries a sixth of the weight, and is never empty under it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccumulatorGas {
-    /// Share of the force that the gas makes; the rest is the linear lock's.
+    /// Share of the force that the gas makes while weight presses on the bore side, where it is piped to
+    /// (facts 1.2); the rest, and what draws a hanging arm in, is the linear lock's.
     pub share: f64,
     /// Pressure of the gas before oil comes in, Pa over the atmosphere's.
     pub precharge_pa: f64,

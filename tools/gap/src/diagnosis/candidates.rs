@@ -43,6 +43,8 @@ pub struct Candidate {
 /// right cause explains two to nine times as much on the runs fitted as it foretells of the others; what
 /// bends to the first alone explains how two models differ.
 const FORETOLD: [f64; 2] = [8.0, 8.0];
+/// The same of a second cause: true ones explain one to four times as much as they foretell.
+const SECOND_FORETOLD: [f64; 2] = [8.0, 1.0];
 
 /// All runs around one state of belief.
 pub(super) struct Docket<'a> {
@@ -60,8 +62,17 @@ impl Candidate {
     /// foretells next to nothing has no more than that.
     #[must_use]
     pub fn score(&self) -> f64 {
+        self.foretelling(FORETOLD)
+    }
+
+    /// The same where it is to stand beside a first cause: what that leaves of the runs fitted, another
+    /// law bends to, and foretells nothing.
+    pub(super) fn second_score(&self) -> f64 {
+        self.foretelling(SECOND_FORETOLD)
+    }
+
+    fn foretelling(&self, [times, beside]: [f64; 2]) -> f64 {
         let sum = self.fit.log_evidence + self.held_gain.unwrap_or_default();
-        let [times, beside] = FORETOLD;
         self.own_share * self.held_gain.map_or(sum, |held| sum.min(times * (held + beside)))
     }
 }

@@ -138,7 +138,7 @@ fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
 /// Probability that a second cause is there beside a first of so many nats.
 fn is_second(second: &Candidate, first_nats: f64) -> f64 {
     let shared = SECOND_SHARE * (1.0 - second.own_share) * first_nats;
-    turned(second.score(), [SECOND[0] + shared, SECOND[1]])
+    turned(second.second_score(), [SECOND[0] + shared, SECOND[1]])
 }
 
 /// One cause for each effect, at its best scope, with the probability of all its scopes.
@@ -302,6 +302,13 @@ mod tests {
             .map(|c| c.effect.name)
             .collect();
         assert_eq!(stood, ["arm-delay", "payload"]);
+    }
+
+    #[test]
+    fn a_second_cause_has_to_foretell_what_it_explains() {
+        let second = |held| Candidate { held_gain: Some(held), ..candidate("pressure-bias", 35.0) };
+        assert!(is_second(&second(2.0), 110.0) < 0.4);
+        assert!(is_second(&second(12.0), 110.0) > 0.9);
     }
 
     #[test]

@@ -26,15 +26,11 @@ struct Vague {
 
 /// The causes that are vague, and why. All other laws have one form: a delay is a delay.
 const VAGUE: [Vague; 7] = [
-    // How the machine came to rest, and how much oil stood where before an accumulator opened, is in no
-    // log.
-    Vague {
-        effects: &["seal-stiction", "standstill-drag", "accumulator-gas"],
-        shows: anywhere,
-        share: 0.6,
-    },
-    // Where a spool's play lies as a log begins is not known, nor whether it rests in between.
-    Vague { effects: &["valve-hysteresis"], shows: anywhere, share: 0.25 },
+    // How the machine came to rest is in no log.
+    Vague { effects: &["seal-stiction", "standstill-drag"], shows: anywhere, share: 0.6 },
+    // Where a spool's play lies as a log begins is not known, nor whether it rests in between; nor how
+    // much oil stood where before an accumulator opened.
+    Vague { effects: &["valve-hysteresis", "accumulator-gas"], shows: anywhere, share: 0.25 },
     // What load an arm drifts at, and how fast near it, is each make's own.
     Vague { effects: &["unsupported-sag"], shows: anywhere, share: 0.15 },
     // One name for laws of some forms: an edge may be sharp or round, a speed go with a load or its root.

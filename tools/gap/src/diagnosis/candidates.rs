@@ -96,7 +96,7 @@ impl<'a> Docket<'a> {
         rank(&mut all);
         let near = all.first().map_or(0.0, |best| NEAR * best.score());
         let settled = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
-        let settled: Vec<Candidate> = settled.map(|near| self.settled(near)).collect();
+        let settled: Vec<Candidate> = settled.map(|candidate| self.settled(candidate)).collect();
         settled.into_iter().for_each(|candidate| settle(&mut all, candidate));
         rank(&mut all);
         let asked = all.len().min(ASKED);
@@ -156,6 +156,7 @@ impl<'a> Docket<'a> {
         (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
     }
 
+    /// The same candidate at the floor of its valley.
     fn settled(&self, Candidate { fit, .. }: &Candidate) -> Candidate {
         self.weighed(fit.hypothesis.settled(&self.fit, fit.clone()))
     }
@@ -194,14 +195,13 @@ impl<'a> Docket<'a> {
             let hypothesis = fit.hypothesis;
             let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);
             let here = gain(fit.from_s).0;
-            let near = [fit.from_s - step_s, fit.from_s + step_s].map(|at_s| gain(at_s.max(0.0)));
-            let [before, after] = near;
+            let near = [fit.from_s - step_s, fit.from_s + step_s];
+            let [before, after] = near.map(|at_s| gain(at_s.max(0.0)));
             let (there, at_s) = if before.0 > after.0 { before } else { after };
-            let moved = hypothesis.refit(&self.fit, at_s, &fit.values);
-            if there > here && moved.log_evidence > fit.log_evidence {
-                fit = moved;
-            } else {
-                step_s *= 0.5;
+            let moved = (there > here).then(|| hypothesis.refit(&self.fit, at_s, &fit.values));
+            match moved.filter(|moved| moved.log_evidence > fit.log_evidence) {
+                Some(moved) => fit = moved,
+                None => step_s *= 0.5,
             }
         }
         fit

@@ -27,7 +27,8 @@ pub(super) struct Loads {
     /// With the filter undone, N.
     pub(super) oil_n: Samples,
     /// Whether a chamber was drained: the piston ran ahead of its oil, so that what came in came past
-    /// the valve, and has not come to rest since; or whether its sensor was off its scale. Empty where no pressures are logged.
+    /// the valve, and has not come to rest since; or whether its sensor was off its scale. Empty where
+    /// no pressures are logged.
     pub(super) is_drained: Vec<bool>,
 }
 

@@ -20,8 +20,8 @@ pub(super) struct ArmDrive<'a> {
     sensors: WheelEffects,
     /// Sensors before a sample, where they were others.
     before: Option<(usize, WheelEffects)>,
-    /// Samples at which effects set in, so that the oil begins anew.
-    anew: [usize; 2],
+    /// Samples at which the arm becomes another, so that its oil begins anew.
+    anew: [Option<usize>; 2],
     loads: Loads,
     area_bore_m2: f64,
 }
@@ -42,21 +42,29 @@ impl<'a> ArmDrive<'a> {
             arm: Arm::new(machine, &smooth),
             sensors: effects.wheels[wheel],
             before: None,
-            anew: [0; 2],
+            anew: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
             area_bore_m2: machine.arms.area_bore_m2,
         }
     }
 
     /// The same over a `course` of effects. Sensors are those of before until the others set in: a reading
-    /// that jumps is followed. Oil begins anew where effects set in, as it then is what it was: a leak that
-    /// had always been there would have emptied it.
+    /// that jumps is followed. Oil begins anew where the arm becomes another, as it then is what it was: a
+    /// leak that had always been there would have emptied it. Not where a sensor jumps, as no load is known
+    /// while the ECU's filter still follows.
     pub(super) fn over(mut self, course: Course<'_>) -> Self {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
         let from = sample(course.from_s);
         self.before = (from > 0).then_some((from, course.before.wheels[self.wheel]));
-        self.anew = [from, sample(course.since_s)];
+        let becomes = |at: usize, [was, is]: [&Effects; 2]| {
+            (was.arms[self.wheel] != is.arms[self.wheel]).then_some(at)
+        };
+        let sound = Effects::default();
+        self.anew = [
+            becomes(sample(course.since_s), [&sound, course.before]),
+            becomes(from, [course.before, course.effects]),
+        ];
         self
     }
 
@@ -87,7 +95,7 @@ impl<'a> ArmDrive<'a> {
         let mut error_m = 0.0;
         let step = |i: usize| {
             let (input, s) = (self.input(i), self.sensors(i));
-            if self.anew.contains(&i) {
+            if self.anew.contains(&Some(i)) {
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
                 seen_n = self.loads.reading_n[i];
             }

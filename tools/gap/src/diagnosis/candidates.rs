@@ -22,7 +22,6 @@ const NEAR: f64 = 0.5;
 const BEGINNING_MIN: f64 = 6.0;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
-
 /// The widest and the finest step in which a beginning is looked for, s.
 const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.1];
 
@@ -95,18 +94,14 @@ impl<'a> Docket<'a> {
         let mut all: Vec<Candidate> = fits.into_par_iter().map(|fit| self.weighed(fit)).collect();
         rank(&mut all);
         let near = all.first().map_or(0.0, |best| NEAR * best.score());
-        let settled = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
-        let settled: Vec<Candidate> = settled.map(|candidate| self.settled(candidate)).collect();
-        settled.into_iter().for_each(|candidate| settle(&mut all, candidate));
-        rank(&mut all);
-        let asked = all.len().min(ASKED);
-        let late: Vec<Candidate> =
-            all[..asked].par_iter().filter_map(|candidate| self.set_in(candidate)).collect();
-        late.into_iter().for_each(|candidate| settle(&mut all, candidate));
-        rank(&mut all);
+        let leading = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
+        let settled: Vec<Candidate> = leading.map(|candidate| self.settled(candidate)).collect();
+        merge(&mut all, settled);
+        let asked = all.par_iter().take(ASKED);
+        let late: Vec<Candidate> = asked.filter_map(|candidate| self.set_in(candidate)).collect();
+        merge(&mut all, late);
         let elsewhere = all.first().map_or(Vec::new(), |best| self.elsewhere(best));
-        elsewhere.into_iter().for_each(|candidate| settle(&mut all, candidate));
-        rank(&mut all);
+        merge(&mut all, elsewhere);
         all
     }
 
@@ -208,12 +203,15 @@ impl<'a> Docket<'a> {
     }
 }
 
-/// Puts a candidate in the place of what was known of its hypothesis.
-fn settle(all: &mut Vec<Candidate>, candidate: Candidate) {
-    match all.iter().position(|known| known.fit.hypothesis == candidate.fit.hypothesis) {
-        Some(place) => all[place] = candidate,
-        None => all.push(candidate),
+/// Puts each of `found` in the place of what was known of its hypothesis, and ranks anew.
+fn merge(all: &mut Vec<Candidate>, found: Vec<Candidate>) {
+    for candidate in found {
+        match all.iter().position(|known| known.fit.hypothesis == candidate.fit.hypothesis) {
+            Some(place) => all[place] = candidate,
+            None => all.push(candidate),
+        }
     }
+    rank(all);
 }
 
 fn rank(all: &mut [Candidate]) {

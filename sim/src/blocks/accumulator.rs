@@ -4,16 +4,21 @@ use xt28_machine::Machine;
 
 use crate::effects::AccumulatorGas;
 
-/// Stiffness of the oil without gas, N/m (assumed: column, hoses and eyes, some 1 GPa of oil modulus
-/// on the mean chamber).
-const OIL_STIFFNESS_N_M: f64 = 1.0e7;
+/// Stiffness of the oil without gas, N/m (assumed: some 1 GPa of oil modulus on a quarter of a metre of
+/// the bore).
+pub(super) const OIL_STIFFNESS_N_M: f64 = 3.0e7;
+/// Share of its length to which the gas is known, and steps after which it is at the latest.
+const SOLVED: f64 = 1.0e-13;
+const STEPS: usize = 64;
+/// Least share of its length from which it is sought.
+const LEAST_LEFT: f64 = 1.0e-3;
 /// Pressure of the atmosphere, Pa: gas laws take absolute pressures.
 const ATMOSPHERE_PA: f64 = 1.013e5;
 
 /// Force against compression of a cylinder with its accumulator.
 ///
-/// Up to the precharge the accumulator is empty and the oil alone gives way; beyond it the gas
-/// follows p V^n = constant, and its force rises ever more steeply.
+/// Up to the precharge the accumulator is empty and the oil alone gives way; beyond it the gas gives way
+/// as well, by p V^n = constant, and the force rises ever more steeply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accumulator {
     /// Compression at which oil begins to come in, m.
@@ -40,7 +45,7 @@ impl Accumulator {
         let filling_m = (precharge_n - back_n) / OIL_STIFFNESS_N_M;
         let gas_m = gas.volume_m3 / a.area_bore_m2;
         let left = (precharge_n / (a.force_max_n + back_n)).powf(1.0 / gas.exponent);
-        let top_m = filling_m + gas_m * (1.0 - left).max(0.0);
+        let top_m = filling_m.max(a.force_max_n / OIL_STIFFNESS_N_M + gas_m * (1.0 - left));
         Self { filling_m, gas_m, precharge_n, back_n, exponent: gas.exponent, top_m }
     }
 
@@ -52,10 +57,32 @@ impl Accumulator {
             return [OIL_STIFFNESS_N_M * compression_m, OIL_STIFFNESS_N_M];
         }
         let beyond_m = (compression_m - self.top_m).max(0.0);
-        let left = 1.0 - (compression_m - beyond_m - self.filling_m) / self.gas_m;
-        let gas_n = self.precharge_n * left.powf(-self.exponent);
-        let slope_n_m = self.exponent * gas_n / (left * self.gas_m);
+        let [gas_n, gas_n_m] = self.gas(compression_m - beyond_m);
+        let slope_n_m = gas_n_m * OIL_STIFFNESS_N_M / (gas_n_m + OIL_STIFFNESS_N_M);
         [gas_n - self.back_n + slope_n_m * beyond_m, slope_n_m]
+    }
+
+    /// What the gas bears, N, and its own slope, N/m, while it and the oil give way by `compression_m`.
+    ///
+    /// By Newton's rule from where the gas would be without the oil: the misfit is convex in the length
+    /// of the gas and that start too short, so every step goes towards the root and none beyond.
+    fn gas(&self, compression_m: f64) -> [f64; 2] {
+        let bears = |left: f64| {
+            let gas_n = self.precharge_n * left.powf(-self.exponent);
+            [gas_n, self.exponent * gas_n / (left * self.gas_m)]
+        };
+        let mut left = (1.0 - (compression_m - self.filling_m) / self.gas_m).max(LEAST_LEFT);
+        for _ in 0..STEPS {
+            let [gas_n, gas_n_m] = bears(left);
+            let oil_m = (gas_n - self.back_n) / OIL_STIFFNESS_N_M;
+            let misfit_m = oil_m + self.gas_m * (1.0 - left) - compression_m;
+            let by = misfit_m / (self.gas_m * (1.0 + gas_n_m / OIL_STIFFNESS_N_M));
+            left += by;
+            if by.abs() < SOLVED {
+                break;
+            }
+        }
+        bears(left)
     }
 
     /// Compression at which the force is the relief valve's, m.
@@ -82,7 +109,7 @@ mod tests {
             let [force_n, _] = accumulator.spring(compression_m);
             let back_n = machine.hydraulics.return_pressure_pa * machine.arms.area_rod_m2;
             let pressure_pa = (force_n + back_n) / area_m2 + ATMOSPHERE_PA;
-            let oil_m3 = (compression_m - accumulator.filling_m) * area_m2;
+            let oil_m3 = (compression_m - force_n / OIL_STIFFNESS_N_M) * area_m2;
             pressure_pa * (gas.volume_m3 - oil_m3).powf(gas.exponent)
         };
         let precharged = (gas.precharge_pa + ATMOSPHERE_PA) * gas.volume_m3.powf(gas.exponent);

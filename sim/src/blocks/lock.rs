@@ -76,6 +76,7 @@ impl Lock {
 
 #[cfg(test)]
 mod tests {
+    use super::super::accumulator::OIL_STIFFNESS_N_M;
     use super::*;
     use crate::effects::{AccumulatorGas, LockStiffness};
 
@@ -97,11 +98,13 @@ mod tests {
         }
     }
 
-    /// k = n (p + 1 atm) A² / V: a heavy arm's gas is stiffer by the pressure ratio to 1 + 1/n.
+    /// k = n (p + 1 atm) A² / V beside the oil's: a heavy arm's gas is stiffer by the pressure ratio to
+    /// 1 + 1/n.
     #[test]
     fn gas_is_stiffer_under_heavier_loads_by_the_polytropic_law() {
         let lock = with_share(1.0);
-        let at = |force_n: f64| lock.spring(lock.compression_m(force_n))[1];
+        let both = |force_n: f64| lock.spring(lock.compression_m(force_n))[1];
+        let at = |force_n: f64| (1.0 / both(force_n) - 1.0 / OIL_STIFFNESS_N_M).recip();
         let absolute = |force_n: f64| (force_n + 5e5 * 0.00589) / 0.00785 + 1.013e5;
         let ratio = (absolute(83e3) / absolute(31e3)).powf(1.0 + 1.0 / 1.3);
         assert!((at(83e3) / at(31e3) / ratio - 1.0).abs() < 1e-9);
@@ -121,7 +124,7 @@ mod tests {
         let (linear, gas) = (with_share(0.0), with_share(1.0));
         let [_, lock_n_m] = linear.spring(linear.compression_m(55e3));
         let [_, gas_n_m] = gas.spring(gas.compression_m(55e3));
-        assert!((gas_n_m / lock_n_m - 1.0).abs() < 0.05, "{gas_n_m}");
+        assert!((gas_n_m / lock_n_m - 1.0).abs() < 0.1, "{gas_n_m}");
     }
 
     #[test]

@@ -49,3 +49,27 @@ fn a_damper_shows_on_a_light_arm_that_lifts_its_wheel() {
     assert!(fits[0].log_evidence > 10.0, "{fits:?}");
     assert!((2.5..5.5).contains(&fits[0].values[0]), "{fits:?}");
 }
+
+#[test]
+fn what_an_arm_leaves_open_another_run_may_tell() {
+    let gas = |manoeuvre, seconds| {
+        let fault = Cause::find("accumulator-gas").unwrap();
+        let case = Case::of(908, fault, Scope::One(Wheel::Fr));
+        signals(case.only(manoeuvre, seconds))
+    };
+    let [fitted, other] = [gas(Manoeuvre::SingleArm, 36.0), gas(Manoeuvre::Mixed, 32.0)];
+    let machine = Machine::xt28();
+    let evidence = |runs| {
+        let watched = vec![Generator::ArmStroke(Wheel::Fr)];
+        Evidence::watching(watched, runs, &machine, Effects::default(), &Knob::all())
+    };
+    let [fitted, other] = [&fitted, &other].map(|runs| evidence(runs));
+    let scope = effects::Scope::Wheel(Wheel::Fr);
+    let hypothesis = Hypothesis { effect: find("accumulator-gas").unwrap(), scope };
+    let alone = hypothesis.refit(&fitted, 0.0, &[1.0, 1.9e6, 1.0e-3, 1.4]);
+    let suiting = hypothesis.suiting(&fitted, &other, &alone);
+    let foretold = [&alone, &suiting].map(|fit| hypothesis.gain(&other, 0.0, &fit.values));
+    assert!(suiting.log_evidence > 0.9 * alone.log_evidence, "{alone:?} {suiting:?}");
+    assert!(foretold[1] > foretold[0] + 20.0, "{foretold:?}");
+    assert!((suiting.values[1] / 2.889e6 - 1.0).abs() < 0.1, "{suiting:?}");
+}

@@ -8,7 +8,7 @@ use xt28_sim::effects::Effect;
 use super::belief::{Base, Belief};
 use super::evidence::{Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
-use super::knob::{Knob, SHIFT_MAX};
+use super::knob::Knob;
 use super::search::search;
 use super::signals::Signals;
 
@@ -18,6 +18,11 @@ const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0,
 const ASKED: usize = 6;
 /// Share of the best one's score above which another is sought to the floor of its valley.
 const NEAR: f64 = 0.5;
+/// What values may lose on the runs fitted that these are said to leave open, nats, and as a share of
+/// what they explain: nine in ten of four parameters' posterior, and what laws differ by.
+const OPEN: [f64; 2] = [4.0, 0.03];
+/// Evidence of the runs fitted from which that is worth a look, nats.
+const SUITED_MIN: f64 = 12.0;
 /// What a beginning must gain beyond the freedom to choose it, nats.
 const BEGINNING_MIN: f64 = 6.0;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
@@ -92,10 +97,13 @@ impl<'a> Docket<'a> {
     pub(super) fn candidates(&self, catalogue: &[&'static Effect]) -> Vec<Candidate> {
         let fits = search(&self.fit, catalogue);
         let mut all: Vec<Candidate> = fits.into_par_iter().map(|fit| self.weighed(fit)).collect();
-        rank(&mut all);
+        let open: Vec<Candidate> = all.par_iter().filter_map(|found| self.suiting(found)).collect();
+        merge(&mut all, open);
         let near = all.first().map_or(0.0, |best| NEAR * best.score());
         let leading = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
-        let settled: Vec<Candidate> = leading.map(|candidate| self.settled(candidate)).collect();
+        let settled = leading.map(|found| (found, self.settled(found)));
+        let settled = settled.filter(|(found, settled)| settled.score() > found.score());
+        let settled: Vec<Candidate> = settled.map(|(_, settled)| settled).collect();
         merge(&mut all, settled);
         let asked = all.par_iter().take(ASKED);
         let late: Vec<Candidate> = asked.filter_map(|candidate| self.set_in(candidate)).collect();
@@ -131,10 +139,10 @@ impl<'a> Docket<'a> {
         self.fit.left(Belief { effects: &effects, from_s })
     }
 
-    /// What each signal leaves that is for `fits` to explain.
-    pub(super) fn apart(&self, fits: &[&Fit]) -> Vec<Left> {
+    /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.
+    pub(super) fn apart(&self, fits: &[&Fit], most: f64) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
-        self.fit.apart(Belief { effects: &effects, from_s }, SHIFT_MAX)
+        self.fit.apart(Belief { effects: &effects, from_s }, most)
     }
 
     /// Where the tolerances go once `fits` are believed, each by how many of its own.
@@ -154,6 +162,22 @@ impl<'a> Docket<'a> {
     /// The same candidate at the floor of its valley.
     fn settled(&self, Candidate { fit, .. }: &Candidate) -> Candidate {
         self.weighed(fit.hypothesis.settled(&self.fit, fit.clone()))
+    }
+
+    /// A candidate that explains much and foretells little, with other values among those that the runs
+    /// fitted leave open: what an accumulator is charged with and its size make up for one another until
+    /// an arm is lighter than any was.
+    fn suiting(&self, found: &Candidate) -> Option<Candidate> {
+        let Candidate { fit, .. } = found;
+        let held = self.held.as_ref().filter(|_| fit.values.len() > 1)?;
+        if found.score() >= fit.log_evidence || fit.log_evidence < SUITED_MIN {
+            return None;
+        }
+        let suited = fit.hypothesis.suiting(&self.fit, held, fit);
+        let least = fit.log_evidence * (1.0 - OPEN[1]) - OPEN[0];
+        let is_open = suited.log_evidence > least;
+        let suited = is_open.then(|| self.weighed(suited))?;
+        (suited.score() > found.score()).then_some(suited)
     }
 
     fn weighed(&self, fit: Fit) -> Candidate {

@@ -8,13 +8,15 @@ use super::evidence::Left;
 use super::how_far::HowFar;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
-use super::knob::Knob;
+use super::knob::{Knob, SHIFT_MAX};
 use super::overlap::own_share;
 use super::signals::Signals;
 use super::verdict::Diagnosis;
 
 /// A second cause must be worth this much, nats.
 const SECOND_MIN: f64 = 12.0;
+/// How far tolerances go, each by its own, where nobody knows beside what.
+const SHIFT_ALONE: f64 = 1.0;
 /// How many of the single candidates may be the first of a pair.
 const LIKELY: usize = 12;
 /// Second causes that are kept.
@@ -65,12 +67,12 @@ impl Inquiry {
         let docket = |base: &_| Docket::new([&fit, &held], &self.machine, base, &knobs);
         tell("driving every block with what was measured", 0.0);
         let first = docket(&self.believed.clone().into());
-        let unbent = first.unbent();
+        let (unbent, alone) = (first.unbent(), first.apart(&[], SHIFT_ALONE));
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first() else {
             let (apart, after, shifts) = (first.left(&[]), first.left(&[]), first.shifts(&[]));
-            return Findings { unbent, apart, single, pair: Vec::new(), after, shifts };
+            return Findings { unbent, alone, apart, single, pair: Vec::new(), after, shifts };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
@@ -78,14 +80,15 @@ impl Inquiry {
         let (pair, after) = owned(pair, &first, &beside);
         let (apart, after, shifts) = match pair.first() {
             Some([one, second]) => {
-                (first.apart(&[&one.fit, &second.fit]), after, beside.shifts(&[&second.fit]))
+                let both = [&one.fit, &second.fit];
+                (first.apart(&both, SHIFT_MAX), after, beside.shifts(&[&second.fit]))
             }
             None => {
                 let best = [&best.fit];
-                (first.apart(&best), first.left(&best), first.shifts(&best))
+                (first.apart(&best, SHIFT_MAX), first.left(&best), first.shifts(&best))
             }
         };
-        Findings { unbent, apart, single, pair, after, shifts }
+        Findings { unbent, alone, apart, single, pair, after, shifts }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

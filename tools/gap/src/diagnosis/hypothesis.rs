@@ -103,6 +103,18 @@ impl Hypothesis {
         self.weighed(evidence, fit.from_s, best.at, best.cost)
     }
 
+    /// What `evidence` says of the hypothesis where it suits `other` runs as well, sought from `fit` on.
+    #[must_use]
+    pub fn suiting(&self, evidence: &Evidence<'_>, other: &Evidence<'_>, fit: &Fit) -> Fit {
+        let cost = |values: &[f64]| {
+            self.cost(evidence, fit.from_s, values) - 2.0 * self.gain(other, fit.from_s, values)
+        };
+        let end = descend(&cost, fit.values.clone(), self.effect.parameters);
+        let at = follow_valley(&cost, end, self.effect.parameters).at;
+        let cost = self.cost(evidence, fit.from_s, &at);
+        self.weighed(evidence, fit.from_s, at, cost)
+    }
+
     /// How much better `evidence` is explained with `values`: half the cost that goes.
     #[must_use]
     pub fn gain(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {

@@ -49,6 +49,9 @@ pub struct Findings {
     /// What each signal leaves while nothing is believed to be wrong, tolerances where they are believed
     /// to be.
     pub unbent: Vec<Left>,
+    /// The same with the tolerances where they are while nothing is believed, none further than one of its
+    /// own: what parts on a machine that nobody can name the fault of.
+    pub alone: Vec<Left>,
     /// The same with the tolerances where they are once the best cause or pair is believed.
     pub apart: Vec<Left>,
     /// Single causes, best first.
@@ -102,7 +105,11 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     };
     Diagnosis {
         verdict,
-        places: places(&findings.apart, &findings.after),
+        // Beside a wrong name tolerances go where that name needs them.
+        places: match verdict {
+            Verdict::Unknown => places(&findings.alone, &findings.after),
+            Verdict::Effect | Verdict::None => places(&findings.apart, &findings.after),
+        },
         causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,
@@ -199,7 +206,7 @@ fn turned(value: f64, [half, sharp]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use xt28_machine::{Machine, Wheel};
-    use xt28_sim::effects::{Scope, find};
+    use xt28_sim::effects::{Block, Scope, find};
 
     use super::super::floor::Signal;
     use super::super::generator::Generator;
@@ -223,6 +230,7 @@ mod tests {
     fn judged(before: f64, after: f64, single: Vec<Candidate>) -> Diagnosis {
         let findings = Findings {
             unbent: left(before),
+            alone: left(before),
             apart: left(before),
             single,
             pair: Vec::new(),
@@ -258,12 +266,34 @@ mod tests {
     }
 
     #[test]
+    fn where_nobody_knows_the_cause_a_wrong_name_does_not_move_the_place() {
+        let steering = || {
+            let generator = Generator::Joint(0);
+            let left = left(30.0);
+            left.into_iter().map(|l| Left { generator, signal: Signal::JointAngle, ..l }).collect()
+        };
+        let findings = |left_over| Findings {
+            unbent: left(400.0),
+            alone: steering(),
+            apart: left(400.0),
+            single: vec![candidate("leakage-drift", 300.0)],
+            pair: Vec::new(),
+            after: left(left_over),
+            shifts: Vec::new(),
+        };
+        let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
+        let block = |left_over| judge(&inquiry, &findings(left_over)).places[0].block;
+        assert_eq!([block(1.0), block(250.0)], [Block::Arms, Block::Steering]);
+    }
+
+    #[test]
     fn what_a_tolerance_has_to_hide_is_unknown() {
         let [knob, ..] = Knob::all()[..] else { panic!("there are knobs") };
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
         let verdict = |by: f64| {
             let findings = Findings {
                 unbent: left(1.0),
+                alone: left(1.0),
                 apart: left(1.0),
                 single: Vec::new(),
                 pair: Vec::new(),
@@ -288,6 +318,7 @@ mod tests {
         let [a, b] = [candidate("arm-delay", 500.0), candidate("payload", 300.0)];
         let findings = Findings {
             unbent: left(100.0),
+            alone: left(100.0),
             apart: left(100.0),
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],

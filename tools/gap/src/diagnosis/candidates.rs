@@ -101,9 +101,7 @@ impl<'a> Docket<'a> {
         merge(&mut all, open);
         let near = all.first().map_or(0.0, |best| NEAR * best.score());
         let leading = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
-        let settled = leading.map(|found| (found, self.settled(found)));
-        let settled = settled.filter(|(found, settled)| settled.score() > found.score());
-        let settled: Vec<Candidate> = settled.map(|(_, settled)| settled).collect();
+        let settled: Vec<Candidate> = leading.filter_map(|found| self.settled(found)).collect();
         merge(&mut all, settled);
         let asked = all.par_iter().take(ASKED);
         let late: Vec<Candidate> = asked.filter_map(|candidate| self.set_in(candidate)).collect();
@@ -159,9 +157,10 @@ impl<'a> Docket<'a> {
         (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
     }
 
-    /// The same candidate at the floor of its valley.
-    fn settled(&self, Candidate { fit, .. }: &Candidate) -> Candidate {
-        self.weighed(fit.hypothesis.settled(&self.fit, fit.clone()))
+    /// The same candidate at the floor of its valley, where it is worth more there.
+    fn settled(&self, found: &Candidate) -> Option<Candidate> {
+        let settled = found.fit.hypothesis.settled(&self.fit, found.fit.clone());
+        Some(self.weighed(settled)).filter(|settled| settled.score() > found.score())
     }
 
     /// A candidate that explains much and foretells little, with other values among those that the runs
@@ -175,9 +174,8 @@ impl<'a> Docket<'a> {
         }
         let suited = fit.hypothesis.suiting(&self.fit, held, fit);
         let least = fit.log_evidence * (1.0 - OPEN[1]) - OPEN[0];
-        let is_open = suited.log_evidence > least;
-        let suited = is_open.then(|| self.weighed(suited))?;
-        (suited.score() > found.score()).then_some(suited)
+        let open = Some(suited).filter(|suited| suited.log_evidence > least)?;
+        Some(self.weighed(open)).filter(|suited| suited.score() > found.score())
     }
 
     fn weighed(&self, fit: Fit) -> Candidate {

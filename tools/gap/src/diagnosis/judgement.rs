@@ -103,13 +103,11 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     } else {
         Verdict::Effect
     };
+    // Beside a wrong name tolerances go where that name needs them.
+    let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
     Diagnosis {
         verdict,
-        // Beside a wrong name tolerances go where that name needs them.
-        places: match verdict {
-            Verdict::Unknown => places(&findings.alone, &findings.after),
-            Verdict::Effect | Verdict::None => places(&findings.apart, &findings.after),
-        },
+        places: places(apart, &findings.after),
         causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,

@@ -35,7 +35,7 @@ pub use belief::{Base, Belief};
 pub use candidates::Candidate;
 pub use details::Details;
 pub use diagnose::Progress;
-pub use evidence::{Evidence, Left};
+pub use evidence::{Echo, Evidence, Left};
 pub use excitation::not_testable;
 pub use floor::{Floor, Signal};
 pub use generator::{Generator, Residual};

@@ -1,5 +1,6 @@
 //! Prints what the logs of a machine say before it is judged: evidence of each cause in nats, what the
-//! best one leaves on each signal in floors, and where the tolerances go with it and without any.
+//! best one leaves on each signal in floors, how much of that is what it explains moved in time, and where
+//! the tolerances go with it and without any.
 //!
 //! ```sh
 //! cargo run --release -p xt28-gap-plants --example write_case -- 7 standstill-drag:left out/
@@ -11,7 +12,7 @@
 
 use std::path::PathBuf;
 
-use xt28_gap::diagnosis::{Candidate, Evidence, Findings, Inquiry, Knob, Signals};
+use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Inquiry, Knob, Signals};
 use xt28_gap_check::Source;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
@@ -19,6 +20,8 @@ use xt28_sim::effects::find;
 
 /// Causes and signals printed of each machine.
 const LISTED: usize = 8;
+/// Echoes printed of each.
+const LOUDEST: usize = 3;
 
 fn main() -> Result<(), String> {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -64,6 +67,11 @@ fn print(findings: &Findings) {
     for (unbent, after) in left.into_iter().take(LISTED) {
         let (before, after_floors) = (unbent.square.sqrt(), after.square.sqrt());
         println!("    {} {}: {before:.2} to {after_floors:.2}", after.generator, after.signal);
+    }
+    let mut echoes: Vec<_> = findings.echoes.iter().collect();
+    echoes.sort_by(|a, b| b.nats.total_cmp(&a.nats));
+    for Echo { generator, signal, nats, explained } in echoes.into_iter().take(LOUDEST) {
+        println!("    {generator} {signal}: {nats:.1} nats of echo, {explained:.0} explained");
     }
 }
 

@@ -111,16 +111,23 @@ impl Report {
     }
 
     fn write_sweep(&self, to: &mut String) -> std::fmt::Result {
-        let [told, placed] = sweep_scores(&self.sweep);
         writeln!(to, "\nwhat is wrong withheld from the catalogue")?;
-        writeln!(to, "{:<32} {}", "unknown, or its class", cell(&told))?;
-        writeln!(to, "{:<32} {}", "at the right place", cell(&placed))?;
+        let rows = [
+            "unknown, or its class",
+            "at the right place",
+            "unknown, of those that show",
+            "placed, of those that show",
+        ];
+        for (row, score) in rows.iter().zip(sweep_scores(&self.sweep)) {
+            writeln!(to, "{row:<32} {}", cell(&score))?;
+        }
         writeln!(to, "{:<36} {:<8} {:<30} parts most", "without", "said", "likeliest")?;
         for w in &self.sweep {
             let verdict = format!("{:?}", w.verdict).to_lowercase();
             let [named, place] = [&w.named, &w.place].map(|t| t.as_deref().unwrap_or("-"));
-            let marks =
-                [(w.is_told, "  <- named falsely or missed"), (w.is_placed, "  <- wrong place")];
+            let missed =
+                if w.is_shown { "  <- named falsely or missed" } else { "  <- shows in nothing" };
+            let marks = [(w.is_told, missed), (w.is_placed, "  <- wrong place")];
             let marks = marks.map(|(fine, mark)| if fine { "" } else { mark }).concat();
             writeln!(to, "{:<36} {verdict:<8} {named:<30} {place}{marks}", w.truth.join(" + "))?;
         }

@@ -2,7 +2,8 @@
 //! it.
 //!
 //! It must not name another effect in its stead, unless one that nothing in these logs tells from it;
-//! and it must look in the right place.
+//! and it must look in the right place. What is too weak for the logs even where everybody has heard of it
+//! is told apart: nobody can ask for it.
 
 use rand::seq::IndexedRandom;
 use rand::{RngCore, SeedableRng};
@@ -35,6 +36,9 @@ pub struct Withheld {
     pub is_told: bool,
     /// Whether that is where the effect shows; of two, either.
     pub is_placed: bool,
+    /// Whether these logs show anything at all: nothing was said without it, nor by a diagnosis that knows
+    /// of it, where they do not.
+    pub is_shown: bool,
 }
 
 /// One machine for each effect of the catalogue that the foreign plants have, drawn from `seed`.
@@ -74,10 +78,16 @@ pub fn sweep(
     crew::each(&known, one).into_iter().collect()
 }
 
-/// How many are told, and how many are placed.
+/// How many are told, how many are placed, and the same of those whose logs show anything.
 #[must_use]
-pub fn sweep_scores(all: &[Withheld]) -> [Score; 2] {
-    [Score::share(all.iter().map(|w| w.is_told)), Score::share(all.iter().map(|w| w.is_placed))]
+pub fn sweep_scores(all: &[Withheld]) -> [Score; 4] {
+    let shown = || all.iter().filter(|w| w.is_shown);
+    [
+        Score::share(all.iter().map(|w| w.is_told)),
+        Score::share(all.iter().map(|w| w.is_placed)),
+        Score::share(shown().map(|w| w.is_told)),
+        Score::share(shown().map(|w| w.is_placed)),
+    ]
 }
 
 fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
@@ -88,15 +98,16 @@ fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
     let forgot = |inquiry: Inquiry, (effect, _): &(&Effect, Scope)| inquiry.without(effect);
     let blind = effects.iter().fold(whole.clone(), forgot).diagnose(&|_| ());
     let first = blind.causes.first();
-    let is_told = match (blind.verdict, first) {
-        (Verdict::Unknown, _) => true,
-        (Verdict::None, _) | (_, None) => false,
-        // Only a diagnosis that knows the effect can say what looks the same.
-        (Verdict::Effect, Some(named)) => {
-            let full = whole.diagnose(&|_| ());
-            effects.iter().any(|(effect, _)| alike(&full, effect, named))
+    // Only a diagnosis that knows the effect can say what looks the same, and what nobody can see.
+    let full = (blind.verdict != Verdict::Unknown).then(|| whole.diagnose(&|_| ()));
+    let is_told = match (blind.verdict, first, &full) {
+        (Verdict::Effect, Some(named), Some(full)) => {
+            effects.iter().any(|(effect, _)| alike(full, effect, named))
         }
+        (verdict, ..) => verdict == Verdict::Unknown,
     };
+    let says_nothing = |full: &Diagnosis| full.verdict == Verdict::None;
+    let is_shown = blind.verdict != Verdict::None || !full.as_ref().is_some_and(says_nothing);
     let place = blind.places.first();
     let shows = |place: &Place| effects.iter().any(|&(effect, on)| shows_at(effect, on, place));
     Ok(Withheld {
@@ -107,6 +118,7 @@ fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
         place: place.map(|place| format!("{} {}", place.block, place.scope)),
         is_told,
         is_placed: place.is_some_and(shows),
+        is_shown,
     })
 }
 

@@ -72,7 +72,7 @@ fn what_is_withheld_is_not_named_and_sound_machines_have_nothing_to_withhold() {
     assert_eq!(all[0].truth, ["valve-gain rear"]);
     assert!(!all[0].named.as_ref().unwrap().starts_with("valve-gain"), "{:?}", all[0]);
     assert_eq!(all[0].place.as_deref(), Some("arms rear"), "{:?}", all[0]);
-    assert!(all[0].is_placed);
+    assert!(all[0].is_placed && all[0].is_shown);
 }
 
 #[test]

@@ -73,3 +73,22 @@ fn what_an_arm_leaves_open_another_run_may_tell() {
     assert!(foretold[1] > foretold[0] + 20.0, "{foretold:?}");
     assert!((suiting.values[1] / 2.889e6 - 1.0).abs() < 0.1, "{suiting:?}");
 }
+
+#[test]
+fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
+    let late = Case::of(3001, Cause::find("arm-delay").unwrap(), Scope::All);
+    let runs = signals(late.only(Manoeuvre::ArmStep, 32.0));
+    let machine = Machine::xt28();
+    let watched = vec![Generator::ArmStroke(Wheel::Fr)];
+    let evidence = Evidence::watching(watched, &runs, &machine, Effects::default(), &Knob::all());
+    let scope = effects::Scope::Wheel(Wheel::Fr);
+    let echo = |effect| {
+        let hypothesis = Hypothesis { effect: find(effect).unwrap(), scope };
+        let fit = hypothesis.refit(&evidence, 0.0, &[0.18]);
+        let effects = hypothesis.applied(&Effects::default(), &fit.values);
+        evidence.echoes(&effects)[0]
+    };
+    let [late, slow] = ["arm-delay", "valve-lag"].map(echo);
+    assert!(slow.explained > 0.7 * late.explained, "{late:?} {slow:?}");
+    assert!(late.nats < 3.0 && slow.nats > 12.0, "{late:?} {slow:?}");
+}

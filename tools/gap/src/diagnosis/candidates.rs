@@ -6,7 +6,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
 use super::belief::{Base, Belief};
-use super::evidence::{Evidence, Left};
+use super::evidence::{Echo, Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::search::search;
@@ -135,6 +135,12 @@ impl<'a> Docket<'a> {
     pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
         self.fit.left(Belief { effects: &effects, from_s })
+    }
+
+    /// How much of what is left there is what `fits` explain, moved in time.
+    pub(super) fn echoes(&self, fits: &[&Fit]) -> Vec<Echo> {
+        let (effects, from_s) = self.believing(fits);
+        self.fit.echoes(Belief { effects: &effects, from_s })
     }
 
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.

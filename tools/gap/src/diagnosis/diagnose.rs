@@ -71,24 +71,23 @@ impl Inquiry {
         tell("trying every cause", 0.05);
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first() else {
-            let (apart, after, shifts) = (first.left(&[]), first.left(&[]), first.shifts(&[]));
-            return Findings { unbent, alone, apart, single, pair: Vec::new(), after, shifts };
+            let (after, shifts) = (first.left(&[]), first.shifts(&[]));
+            let (apart, echoes) = (after.clone(), Vec::new());
+            let pair = Vec::new();
+            return Findings { unbent, alone, apart, single, pair, after, echoes, shifts };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
         let (pair, after) = owned(pair, &first, &beside);
-        let (apart, after, shifts) = match pair.first() {
+        let (believed, after, shifts) = match pair.first() {
             Some([one, second]) => {
-                let both = [&one.fit, &second.fit];
-                (first.apart(&both, SHIFT_MAX), after, beside.shifts(&[&second.fit]))
+                (vec![&one.fit, &second.fit], after, beside.shifts(&[&second.fit]))
             }
-            None => {
-                let best = [&best.fit];
-                (first.apart(&best, SHIFT_MAX), first.left(&best), first.shifts(&best))
-            }
+            None => (vec![&best.fit], first.left(&[&best.fit]), first.shifts(&[&best.fit])),
         };
-        Findings { unbent, alone, apart, single, pair, after, shifts }
+        let (apart, echoes) = (first.apart(&believed, SHIFT_MAX), first.echoes(&believed));
+        Findings { unbent, alone, apart, single, pair, after, echoes, shifts }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

@@ -8,6 +8,7 @@
 //! `N + (N + nu) ln((RSS + nu) / (N + nu))` beyond: a block that nothing explains raises its own scale
 //! and does not drown the others.
 
+mod echo;
 mod stack;
 mod watch;
 
@@ -23,6 +24,7 @@ use super::floor::Signal;
 use super::generator::Generator;
 use super::knob::Knob;
 use super::signals::Signals;
+pub use echo::Echo;
 use stack::Group;
 pub(super) use watch::Memory;
 use watch::{Sums, Watch};
@@ -190,19 +192,37 @@ impl<'a> Evidence<'a> {
     /// What is left on each signal, tolerances at their best.
     #[must_use]
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
-        let belief = belief.into();
+        let (values, sums, step) = self.answers(belief.into());
+        let mut all = self.left_at(&sums, &step);
+        let each = self.watches.iter().zip(values);
+        let steady = each.flat_map(|(watch, values)| watch.steady(&watch.bent(values, &step)));
+        for (left, steady) in all.iter_mut().zip(steady) {
+            left.steady = steady;
+        }
+        all
+    }
+
+    /// How much of what is left on each signal is what `belief` explains there, moved in time.
+    #[must_use]
+    pub fn echoes<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Echo> {
+        let (values, _, step) = self.answers(belief.into());
+        let each = self.watches.iter().zip(values);
+        each.flat_map(|(watch, believed)| {
+            let left = watch.bent(believed.clone(), &step);
+            watch.echoes(&believed, &left)
+        })
+        .collect()
+    }
+
+    /// Residuals of each watch under `belief`, what the cost has to know of them, and where the tolerances
+    /// go with it.
+    fn answers(&self, belief: Belief<'_>) -> (Vec<Vec<f64>>, Vec<Cow<'_, Sums>>, DVector<f64>) {
         let values = |watch: &Watch| watch.values(self.runs, &self.machine, belief);
         let values: Vec<Vec<f64>> = self.watches.par_iter().map(values).collect();
         let each = self.watches.iter().zip(&values);
         let sums: Vec<_> = each.map(|(w, values)| Cow::Owned(w.sums_of(values))).collect();
         let step = self.step(&sums);
-        let mut all = self.left_at(&sums, &step);
-        let each = self.watches.iter().zip(values);
-        let steady = each.flat_map(|(watch, values)| watch.steady(values, &step));
-        for (left, steady) in all.iter_mut().zip(steady) {
-            left.steady = steady;
-        }
-        all
+        (values, sums, step)
     }
 
     /// What the base leaves on each signal, tolerances where they are believed to be.

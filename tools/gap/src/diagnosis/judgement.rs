@@ -11,12 +11,12 @@ mod places;
 use std::collections::BTreeMap;
 
 use super::candidates::Candidate;
-use super::evidence::Left;
+use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
-use allowed::excess;
+use allowed::{echoing, excess};
 use places::places;
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
@@ -60,13 +60,16 @@ pub struct Findings {
     pub pair: Vec<[Candidate; 2]>,
     /// What each signal leaves under the best cause or pair.
     pub after: Vec<Left>,
+    /// How much of that is what they explain, moved in time.
+    pub echoes: Vec<Echo>,
     /// Where the tolerances go beside the best cause or pair, each by how many of its own.
     pub shifts: Vec<(Knob, f64)>,
 }
 
 impl Findings {
-    /// How far the worst signal lies above what a right answer leaves, or the tolerances, all together or
-    /// the one that goes furthest, above what it takes; about one where all is explained.
+    /// How far the worst signal lies above what a right answer leaves, or its echo above that of one, or
+    /// the tolerances, all together or the one that goes furthest, above what it takes; about one where
+    /// all is explained.
     #[must_use]
     pub fn left_over(&self) -> f64 {
         let squares = || self.shifts.iter().map(|(_, by)| by * by);
@@ -77,8 +80,9 @@ impl Findings {
         let names: Vec<_> =
             self.single.first().into_iter().chain(pair).map(Candidate::name).collect();
         let signals = self.unbent.iter().zip(&self.after);
-        let left = signals.map(|(before, after)| excess(&names, before, after)).fold(0.0, f64::max);
-        bend.max(left)
+        let left = signals.map(|(before, after)| excess(&names, before, after));
+        let echoes = self.echoes.iter().map(|echo| echoing(&names, echo));
+        left.chain(echoes).fold(bend, f64::max)
     }
 
     /// Evidence of the best cause, nats.
@@ -233,6 +237,7 @@ mod tests {
             single,
             pair: Vec::new(),
             after: left(after),
+            echoes: Vec::new(),
             shifts: Vec::new(),
         };
         judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
@@ -277,6 +282,7 @@ mod tests {
             single: vec![candidate("leakage-drift", 300.0)],
             pair: Vec::new(),
             after: left(left_over),
+            echoes: Vec::new(),
             shifts: Vec::new(),
         };
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
@@ -296,6 +302,7 @@ mod tests {
                 single: Vec::new(),
                 pair: Vec::new(),
                 after: left(1.0),
+                echoes: Vec::new(),
                 shifts: vec![(knob, by)],
             };
             judge(&inquiry, &findings).verdict
@@ -321,6 +328,7 @@ mod tests {
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],
             after: left(1.0),
+            echoes: Vec::new(),
             shifts: Vec::new(),
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);

@@ -8,7 +8,7 @@ use crate::diagnosis::generator::Generator;
 use crate::diagnosis::signals::Signals;
 
 /// Time between two samples of a residual, s.
-const STEP_S: f64 = 0.1;
+pub(super) const STEP_S: f64 = 0.1;
 
 /// One signal of a generator, over all runs.
 #[derive(Clone, Copy, Debug)]

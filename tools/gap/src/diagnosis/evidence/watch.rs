@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::stack::{Group, Stack};
+use super::echo::{Echo, Filter};
+use super::stack::{Group, STEP_S, Stack};
 use crate::diagnosis::belief::{Base, Belief};
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::knob::Knob;
@@ -132,13 +133,17 @@ impl Watch {
         instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
     }
 
-    /// Mean square of `values` in each group, tolerances gone by `step`, without the samples that leave
-    /// most.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
-    pub(super) fn steady(&self, mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
+    /// `values` once the tolerances have gone by `step`.
+    pub(super) fn bent(&self, mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
         for (knob, slope) in self.knobs.iter().zip(&self.slopes) {
             values.iter_mut().zip(slope).for_each(|(value, slope)| *value += slope * step[*knob]);
         }
+        values
+    }
+
+    /// Mean square of `values` in each group without the samples that leave most.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
+    pub(super) fn steady(&self, values: &[f64]) -> Vec<f64> {
         let steady = |(index, group): (usize, &Group)| {
             let own = values.iter().zip(&self.stack.group).filter(|(_, group)| **group == index);
             let mut squares: Vec<f64> = own.map(|(value, _)| value * value).collect();
@@ -147,6 +152,28 @@ impl Watch {
             squares[..kept].iter().sum::<f64>() / ((1.0 - BUMPS) * group.samples).max(1.0)
         };
         self.stack.groups.iter().enumerate().map(steady).collect()
+    }
+
+    /// How much of what each group leaves is what it explains, moved in time: `believed` are residuals
+    /// under a belief, `left` the same once tolerances have gone where they go. Samples that are as they
+    /// were, of which the belief says nothing or no longer can, are holes.
+    pub(super) fn echoes(&self, believed: &[f64], left: &[f64]) -> Vec<Echo> {
+        let Stack { generator, ref values, ref group, ref at_s, ref groups, .. } = self.stack;
+        let follows = |a: &usize, b: &usize| (at_s[*b] - at_s[*a] - STEP_S).abs() < 0.5 * STEP_S;
+        let echo = |(index, Group { signal, .. }): (usize, &Group)| {
+            let own = |i: &usize| group[*i] == index && values[*i] != believed[*i];
+            let own: Vec<usize> = (0..values.len()).filter(own).collect();
+            let mut filter = Filter::new();
+            for stretch in own.chunk_by(follows) {
+                let explained: Vec<f64> =
+                    stretch.iter().map(|&i| values[i] - believed[i]).collect();
+                let left: Vec<f64> = stretch.iter().map(|&i| left[i]).collect();
+                filter.add(&explained, &left);
+            }
+            let [nats, explained] = filter.nats();
+            Echo { generator, signal: *signal, nats, explained }
+        };
+        groups.iter().enumerate().map(echo).collect()
     }
 
     /// The base before `from_s` of every run, `values` after.

@@ -1,6 +1,7 @@
-//! What a right answer may leave of each signal: a floor, and a share of the gap that was there.
+//! What a right answer may leave of each signal: a floor, and a share of the gap that was there; and how
+//! much of that may be what it explains, moved in time.
 
-use super::super::evidence::Left;
+use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 
@@ -14,6 +15,12 @@ const ROLL: [f64; 2] = [1.3, 0.15];
 const COURSE: [f64; 2] = [1.3, LAW];
 /// Signals with fewer independent samples say nothing of what is left.
 const SAMPLES_MIN: f64 = 8.0;
+
+/// An echo that chance makes on a signal, nats: the seven taps of the filter, and what correlates.
+const ECHO: f64 = 8.0;
+/// The share of a gap that an echo may have on what a joint does within a second: models of one joint
+/// differ there by as much as most effects do.
+const JOINT_ECHO: f64 = 0.5;
 
 /// Causes whose laws are known less well than others', and by how much.
 struct Vague {
@@ -61,19 +68,31 @@ pub(super) fn excess(names: &[&str], before: &Left, after: &Left) -> f64 {
     if after.samples < SAMPLES_MIN {
         return 0.0;
     }
-    let vague = VAGUE.iter().filter(|v| v.effects.iter().any(|effect| names.contains(effect)));
-    let here = vague.filter(|vague| (vague.shows)(after.generator, after.signal));
     let [floor, law] = match after.signal {
         Signal::Roll => ROLL,
         Signal::TravelCourse => COURSE,
         _ => [1.0, LAW],
     };
-    let share = here.map(|vague| vague.share).fold(law, f64::max);
+    let share = vagueness(names, after.generator, after.signal).max(law);
     // A wheel that lifts jolts arms and attitude; nothing jolts the pressure that a law asks for, and
     // what is late shows there for moments alone.
     let jolts = after.signal != Signal::DrivePressure;
     let left = if jolts { after.steady } else { after.square };
     left.sqrt() / (floor + share * before.square.sqrt())
+}
+
+/// How loud `echo` is beside the loudest that a right answer, which is one of `names` or both, has there.
+pub(super) fn echoing(names: &[&str], echo: &Echo) -> f64 {
+    let law = if echo.signal == Signal::JointFast { JOINT_ECHO } else { LAW };
+    let share = vagueness(names, echo.generator, echo.signal).max(law);
+    (echo.nats / (ECHO + share * share * echo.explained)).sqrt()
+}
+
+/// The share of a gap by which the laws of `names` are vague in `signal`.
+fn vagueness(names: &[&str], generator: Generator, signal: Signal) -> f64 {
+    let vague = VAGUE.iter().filter(|v| v.effects.iter().any(|effect| names.contains(effect)));
+    let here = vague.filter(|vague| (vague.shows)(generator, signal));
+    here.map(|vague| vague.share).fold(0.0, f64::max)
 }
 
 fn anywhere(_: Generator, _: Signal) -> bool {
@@ -119,6 +138,18 @@ mod tests {
         };
         assert!(of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke) < 0.5);
         assert!(of(Generator::Drive, Signal::DrivePressure) > 2.0);
+    }
+
+    #[test]
+    fn an_echo_is_none_where_a_law_is_vague_or_chance_makes_as_much() {
+        let of = |name: &str, signal, nats| {
+            let generator = Generator::ArmStroke(Wheel::Fr);
+            echoing(&[name], &Echo { generator, signal, nats, explained: 4000.0 })
+        };
+        assert!(of("valve-lag", Signal::Stroke, 100.0) > 2.0);
+        assert!(of("valve-lag", Signal::Stroke, 5.0) < 1.0);
+        assert!(of("valve-hysteresis", Signal::Stroke, 100.0) < 1.0);
+        assert!(of("steer-lag", Signal::JointFast, 100.0) < 1.0);
     }
 
     #[test]

@@ -70,7 +70,7 @@ fn print(findings: &Findings) {
     }
     let mut echoes: Vec<_> = findings.echoes.iter().collect();
     echoes.sort_by(|a, b| b.nats.total_cmp(&a.nats));
-    for Echo { generator, signal, nats, explained } in echoes.into_iter().take(LOUDEST) {
+    for Echo { generator, signal, nats, explained, .. } in echoes.into_iter().take(LOUDEST) {
         println!("    {generator} {signal}: {nats:.1} nats of echo, {explained:.0} explained");
     }
 }
@@ -80,13 +80,7 @@ fn print_tolerances(of: &str, mut shifts: Vec<(Knob, f64)>) {
     println!("    tolerances, {of}: {squares:.0} squares of their own");
     shifts.sort_by(|(_, a), (_, b)| b.abs().total_cmp(&a.abs()));
     for (knob, by) in shifts.into_iter().take(LISTED) {
-        let name = match knob {
-            Knob::Effect(effect, parameter, scope) => {
-                format!("{} {scope} {}", effect.name, parameter.name)
-            }
-            Knob::Machine(tolerance) => tolerance.name.to_owned(),
-        };
-        println!("      {by:+.1} {name}");
+        println!("      {by:+.1} {knob}");
     }
 }
 

@@ -6,6 +6,7 @@
 //! which of the catalogue is it.
 
 mod allowed;
+mod objection;
 mod places;
 
 use std::collections::BTreeMap;
@@ -16,7 +17,7 @@ use super::excitation::not_testable;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
-use allowed::{echoing, excess};
+use objection::Objection;
 use places::places;
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
@@ -28,14 +29,6 @@ const SECOND: [f64; 2] = [28.0, 5.0];
 const SECOND_SHARE: f64 = 0.08;
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
 const UNKNOWN: [f64; 2] = [1.2, 10.0];
-/// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
-/// is not in the catalogue bends them by more.
-const SHIFTS: f64 = 53.0;
-/// The share of the best evidence, nats, by which that rises: what a law leaves of a large gap bends
-/// tolerances too.
-const SHIFTS_SHARE: f64 = 0.01;
-/// How far the one that goes furthest may go, by its own.
-const SHIFT: f64 = 4.4;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
 const TEMPERATURE_SHARE: f64 = 0.03;
 /// Effects this much less likely than the best, as a factor, are in its class.
@@ -72,17 +65,7 @@ impl Findings {
     /// all is explained.
     #[must_use]
     pub fn left_over(&self) -> f64 {
-        let squares = || self.shifts.iter().map(|(_, by)| by * by);
-        let furthest = squares().fold(0.0, f64::max) / (SHIFT * SHIFT);
-        let taken = SHIFTS + SHIFTS_SHARE * self.evidence();
-        let bend = furthest.max(squares().sum::<f64>() / taken);
-        let pair = self.pair.first().into_iter().flatten();
-        let names: Vec<_> =
-            self.single.first().into_iter().chain(pair).map(Candidate::name).collect();
-        let signals = self.unbent.iter().zip(&self.after);
-        let left = signals.map(|(before, after)| excess(&names, before, after));
-        let echoes = self.echoes.iter().map(|echo| echoing(&names, echo));
-        left.chain(echoes).fold(bend, f64::max)
+        self.objection().times
     }
 
     /// Evidence of the best cause, nats.
@@ -118,7 +101,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         together: None,
         next: None,
         not_testable: not_testable(&runs, &inquiry.catalogue),
-        notes: notes(inquiry),
+        notes: notes(inquiry, findings, verdict),
         seconds: 0.0,
     }
 }
@@ -190,11 +173,22 @@ fn estimates(candidate: &Candidate) -> Vec<Estimate> {
     parameters.map(|(p, (value, sigma))| Estimate::new(p, *value, *sigma)).collect()
 }
 
-fn notes(inquiry: &Inquiry) -> Vec<String> {
+fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
     let held: Vec<_> = inquiry.runs.iter().filter(|run| !run.fit).collect();
     let mut notes = Vec::new();
     if held.is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
+    }
+    if verdict == Verdict::Unknown
+        && let Some(best) = findings.single.first()
+    {
+        let Objection { times, why } = findings.objection();
+        notes.push(format!(
+            "{} on {} explains most, but is not believed, because {why}: {times:.1} times the most that a \
+             right cause would",
+            best.name(),
+            best.fit.hypothesis.scope
+        ));
     }
     notes
 }
@@ -266,6 +260,8 @@ mod tests {
         let diagnosis = judged(400.0, 250.0, vec![candidate("leakage-drift", 300.0)]);
         assert_eq!(diagnosis.verdict, Verdict::Unknown);
         assert!(diagnosis.causes[0].probability < 0.5);
+        let [.., why] = &diagnosis.notes[..] else { panic!("it says why") };
+        assert!(why.contains("15.8 floors of 20.0"), "{why}");
     }
 
     #[test]

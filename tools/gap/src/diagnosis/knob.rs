@@ -1,5 +1,7 @@
 //! What inference may turn: every parameter of every effect, and the machine's own tolerances.
 
+use core::fmt;
+
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::{Block, CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Scope, Slot};
@@ -68,6 +70,17 @@ pub static TOLERANCES: &[Tolerance] = &[
         apply: |m, f| m.drive.speed_time_constant_s *= f,
     },
 ];
+
+impl fmt::Display for Knob {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Effect(effect, parameter, scope) => {
+                write!(f, "{} {scope} {}", effect.name, parameter.name)
+            }
+            Self::Machine(tolerance) => f.write_str(tolerance.name),
+        }
+    }
+}
 
 impl Knob {
     /// All that may be turned at once: scoped effects wheel by wheel, the others once.

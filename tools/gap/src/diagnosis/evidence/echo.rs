@@ -25,6 +25,16 @@ pub struct Echo {
     pub nats: f64,
     /// Half the squares of what is explained, floors.
     pub explained: f64,
+    /// Independent samples.
+    pub samples: f64,
+}
+
+impl Echo {
+    /// Mean square of what is explained, in units of the floor.
+    #[must_use]
+    pub fn square(&self) -> f64 {
+        2.0 * self.explained / self.samples.max(1.0)
+    }
 }
 
 /// What a filter by which what is explained becomes what is left has to know of both.

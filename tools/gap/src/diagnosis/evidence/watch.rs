@@ -160,7 +160,7 @@ impl Watch {
     pub(super) fn echoes(&self, believed: &[f64], left: &[f64]) -> Vec<Echo> {
         let Stack { generator, ref values, ref group, ref at_s, ref groups, .. } = self.stack;
         let follows = |a: &usize, b: &usize| (at_s[*b] - at_s[*a] - STEP_S).abs() < 0.5 * STEP_S;
-        let echo = |(index, Group { signal, .. }): (usize, &Group)| {
+        let echo = |(index, &Group { signal, samples }): (usize, &Group)| {
             let own = |i: &usize| group[*i] == index && values[*i] != believed[*i];
             let own: Vec<usize> = (0..values.len()).filter(own).collect();
             let mut filter = Filter::new();
@@ -171,7 +171,7 @@ impl Watch {
                 filter.add(&explained, &left);
             }
             let [nats, explained] = filter.nats();
-            Echo { generator, signal: *signal, nats, explained }
+            Echo { generator, signal, nats, explained, samples }
         };
         groups.iter().enumerate().map(echo).collect()
     }

@@ -63,8 +63,9 @@ const VAGUE: [Vague; 7] = [
 ];
 
 /// What `after` leaves, by what a right answer, which is one of `names` or both, may leave where `before`
-/// was there; about one at most if it is right.
-pub(super) fn excess(names: &[&str], before: &Left, after: &Left) -> f64 {
+/// was there or, if that is more, squares of `explained` floors on average; about one at most if it is
+/// right.
+pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64) -> f64 {
     if after.samples < SAMPLES_MIN {
         return 0.0;
     }
@@ -78,7 +79,7 @@ pub(super) fn excess(names: &[&str], before: &Left, after: &Left) -> f64 {
     // what is late shows there for moments alone.
     let jolts = after.signal != Signal::DrivePressure;
     let left = if jolts { after.steady } else { after.square };
-    left.sqrt() / (floor + share * before.square.sqrt())
+    left.sqrt() / (floor + share * before.square.max(explained).sqrt())
 }
 
 /// How loud `echo` is beside the loudest that a right answer, which is one of `names` or both, has there.
@@ -122,7 +123,7 @@ mod tests {
     fn a_vague_law_may_leave_more_where_it_is_vague() {
         let of = |name: &str, signal: Signal| {
             let at = |floors| left(Generator::Stance, signal, floors, floors);
-            excess(&[name], &at(10.0), &at(4.0))
+            excess(&[name], [&at(10.0), &at(4.0)], 0.0)
         };
         assert!(of("payload", Signal::Weight) > 2.0);
         assert!(of("seal-stiction", Signal::Weight) < 1.0);
@@ -131,10 +132,19 @@ mod tests {
     }
 
     #[test]
+    fn a_vague_law_that_explains_more_than_there_is_may_leave_its_share_of_that() {
+        let at = |floors| left(Generator::Stance, Signal::WeightX, floors, floors);
+        let of = |name, explained| excess(&[name], [&at(1.6), &at(2.6)], explained);
+        assert!(of("rolling-resistance", 4.3_f64.powi(2)) < 1.1);
+        assert!(of("rolling-resistance", 0.0) > 1.5);
+        assert!(of("payload", 4.3_f64.powi(2)) > 1.5);
+    }
+
+    #[test]
     fn jolts_are_overlooked_where_there_can_be_jolts() {
         let of = |generator, signal| {
             let before = left(generator, signal, 10.0, 10.0);
-            excess(&["throttle-delay"], &before, &left(generator, signal, 4.0, 0.5))
+            excess(&["throttle-delay"], [&before, &left(generator, signal, 4.0, 0.5)], 0.0)
         };
         assert!(of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke) < 0.5);
         assert!(of(Generator::Drive, Signal::DrivePressure) > 2.0);
@@ -144,7 +154,7 @@ mod tests {
     fn an_echo_is_none_where_a_law_is_vague_or_chance_makes_as_much() {
         let of = |name: &str, signal, nats| {
             let generator = Generator::ArmStroke(Wheel::Fr);
-            echoing(&[name], &Echo { generator, signal, nats, explained: 4000.0 })
+            echoing(&[name], &Echo { generator, signal, nats, explained: 4000.0, samples: 150.0 })
         };
         assert!(of("valve-lag", Signal::Stroke, 100.0) > 2.0);
         assert!(of("valve-lag", Signal::Stroke, 5.0) < 1.0);
@@ -158,6 +168,6 @@ mod tests {
             assert!(xt28_sim::effects::find(effect).is_some(), "{effect}");
         }
         let few = Left { samples: 7.0, ..left(Generator::Drive, Signal::DriveForce, 50.0, 50.0) };
-        assert!(excess(&[], &few, &few).abs() < f64::EPSILON);
+        assert!(excess(&[], [&few, &few], 0.0).abs() < f64::EPSILON);
     }
 }

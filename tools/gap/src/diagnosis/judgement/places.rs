@@ -11,6 +11,9 @@ use crate::diagnosis::verdict::Place;
 
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
 const ALIKE: f64 = 0.4;
+/// Independent samples by which a gap is as sure as it gets: more of them do not make a place of two
+/// floors out of what any model errs by, beside one of sixty.
+const SURE: f64 = 40.0;
 
 /// Places by what their gaps say, in nats: what goes once the best cause is believed, and what is then
 /// still there beyond the floor. A gap that every machine has says nothing, however large it is.
@@ -64,9 +67,10 @@ struct Parting<'a> {
 
 impl<'a> Parting<'a> {
     fn new((before, after): (&'a Left, &Left)) -> Self {
-        let least = Left { square: after.square.min(1.0), ..*after };
-        let excess = (before.square - 1.0).max(0.0);
-        Self { left: before, excess, nats: (before.cost() - least.cost()).max(0.0) }
+        let samples = before.samples.min(SURE);
+        let cost = |square| Left { square, samples, ..*before }.cost();
+        let nats = (cost(before.square) - cost(after.square.min(1.0))).max(0.0);
+        Self { left: before, excess: (before.square - 1.0).max(0.0), nats }
     }
 }
 
@@ -129,6 +133,22 @@ mod tests {
         let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
         assert_eq!(places(&before, &before).len(), 6);
     }
+
+    #[test]
+    fn a_gap_of_sixty_floors_comes_before_one_of_two_that_has_more_samples() {
+        let of = |generator, signal, floors: f64, samples| Left {
+            generator,
+            signal,
+            square: floors * floors,
+            steady: floors * floors,
+            samples,
+        };
+        let arm = |floors| of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, floors, 150.0);
+        let weight = |floors| of(Generator::Stance, Signal::Weight, floors, 17.0);
+        let places = places(&[arm(2.2), weight(60.0)], &[arm(1.0), weight(2.0)]);
+        assert_eq!(places[0].block, Block::Payload);
+    }
+
     #[test]
     fn what_a_cause_explains_comes_before_a_gap_that_stays() {
         let roll = |square| Left {

@@ -184,7 +184,7 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
     {
         let Objection { times, why } = findings.objection();
         notes.push(format!(
-            "{} on {} explains most, but is not believed, because {why}: {times:.1} times the most that a \
+            "{} ({}) explains most, but is not believed, because {why}: {times:.1} times the most that a \
              right cause would",
             best.name(),
             best.fit.hypothesis.scope

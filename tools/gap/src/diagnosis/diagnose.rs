@@ -72,9 +72,8 @@ impl Inquiry {
         let single = first.candidates(&self.catalogue);
         let Some(best) = single.first() else {
             let (after, shifts) = (first.left(&[]), first.shifts(&[]));
-            let (apart, echoes) = (after.clone(), Vec::new());
-            let pair = Vec::new();
-            return Findings { unbent, alone, apart, single, pair, after, echoes, shifts };
+            let apart = after.clone();
+            return Findings { unbent, alone, apart, after, shifts, ..Findings::default() };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single);

@@ -37,7 +37,7 @@ const CLASS: f64 = 0.2;
 const LISTED: usize = 10;
 
 /// What the logs say of every hypothesis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Findings {
     /// What each signal leaves while nothing is believed to be wrong, tolerances where they are believed
     /// to be.
@@ -229,10 +229,8 @@ mod tests {
             alone: left(before),
             apart: left(before),
             single,
-            pair: Vec::new(),
             after: left(after),
-            echoes: Vec::new(),
-            shifts: Vec::new(),
+            ..Findings::default()
         };
         judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
     }
@@ -276,10 +274,8 @@ mod tests {
             alone: steering(),
             apart: left(400.0),
             single: vec![candidate("leakage-drift", 300.0)],
-            pair: Vec::new(),
             after: left(left_over),
-            echoes: Vec::new(),
-            shifts: Vec::new(),
+            ..Findings::default()
         };
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
         let block = |left_over| judge(&inquiry, &findings(left_over)).places[0].block;
@@ -295,11 +291,9 @@ mod tests {
                 unbent: left(1.0),
                 alone: left(1.0),
                 apart: left(1.0),
-                single: Vec::new(),
-                pair: Vec::new(),
                 after: left(1.0),
-                echoes: Vec::new(),
                 shifts: vec![(knob, by)],
+                ..Findings::default()
             };
             judge(&inquiry, &findings).verdict
         };
@@ -324,8 +318,7 @@ mod tests {
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],
             after: left(1.0),
-            echoes: Vec::new(),
-            shifts: Vec::new(),
+            ..Findings::default()
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
         let stood: Vec<&str> = diagnosis

@@ -86,3 +86,39 @@ impl Findings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Wheel;
+
+    use super::super::super::floor::Signal;
+    use super::super::super::generator::Generator;
+    use super::super::super::knob::Knob;
+    use super::*;
+
+    fn echo(nats: f64) -> Echo {
+        let generator = Generator::ArmStroke(Wheel::Fr);
+        Echo { generator, signal: Signal::Stroke, nats, explained: 900.0, samples: 150.0 }
+    }
+
+    #[test]
+    fn the_strongest_is_told() {
+        let [knob, ..] = Knob::all()[..] else { panic!("there are knobs") };
+        let of = |nats, by| {
+            let (echoes, shifts) = (vec![echo(nats)], vec![(knob, by)]);
+            Findings { echoes, shifts, ..Findings::default() }.objection()
+        };
+        let [echoing, bent] = [of(60.0, 2.0), of(2.0, -7.0)];
+        assert!(echoing.times > 1.5 && echoing.why.contains("stroke of arm FR"), "{echoing:?}");
+        assert!(echoing.why.contains("60 nats"), "{echoing:?}");
+        assert!(bent.times > 1.5 && bent.why.contains(&knob.to_string()), "{bent:?}");
+        assert!(of(1.0, 0.5).times < 0.5);
+    }
+
+    #[test]
+    fn all_tolerances_together_may_be_too_much_where_each_is_not() {
+        let shifts: Vec<_> = Knob::all().into_iter().take(30).map(|knob| (knob, 2.0)).collect();
+        let objection = Findings { shifts, ..Findings::default() }.objection();
+        assert!(objection.times > 2.0 && objection.why.contains("120 squares"), "{objection:?}");
+    }
+}

@@ -36,8 +36,8 @@ pub struct Withheld {
     pub is_told: bool,
     /// Whether that is where the effect shows; of two, either.
     pub is_placed: bool,
-    /// Whether these logs show anything at all: nothing was said without it, nor by a diagnosis that knows
-    /// of it, where they do not.
+    /// Whether these logs show anything: they do not where nothing was said without it, nor by a diagnosis
+    /// that knows of it.
     pub is_shown: bool,
 }
 
@@ -106,8 +106,8 @@ fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
         }
         (verdict, ..) => verdict == Verdict::Unknown,
     };
-    let says_nothing = |full: &Diagnosis| full.verdict == Verdict::None;
-    let is_shown = blind.verdict != Verdict::None || !full.as_ref().is_some_and(says_nothing);
+    let is_nothing = |said: &Diagnosis| said.verdict == Verdict::None;
+    let is_shown = !(is_nothing(&blind) && full.as_ref().is_some_and(is_nothing));
     let place = blind.places.first();
     let shows = |place: &Place| effects.iter().any(|&(effect, on)| shows_at(effect, on, place));
     Ok(Withheld {

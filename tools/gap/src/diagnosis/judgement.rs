@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
+use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
@@ -66,6 +67,12 @@ impl Findings {
     #[must_use]
     pub fn left_over(&self) -> f64 {
         self.objection().times
+    }
+
+    /// The best pair, or the best cause where one is enough.
+    fn believed(&self) -> impl Iterator<Item = &Candidate> {
+        let alone = self.single.first().filter(|_| self.pair.is_empty());
+        self.pair.first().into_iter().flatten().chain(alone)
     }
 
     /// Evidence of the best cause, nats.
@@ -179,15 +186,18 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
     if held.is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
-    if verdict == Verdict::Unknown
-        && let Some(best) = findings.single.first()
-    {
+    let believed: Vec<String> = findings
+        .believed()
+        .map(|Candidate { fit: Fit { hypothesis, .. }, .. }| {
+            format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
+        })
+        .collect();
+    if verdict == Verdict::Unknown && !believed.is_empty() {
         let Objection { times, why } = findings.objection();
         notes.push(format!(
-            "{} ({}) explains most, but is not believed, because {why}: {times:.1} times the most that a \
-             right cause would",
-            best.name(),
-            best.fit.hypothesis.scope
+            "{}, the likeliest answer, is not believed, because {why}: {times:.1} times the most that a \
+             right one would",
+            believed.join(" beside ")
         ));
     }
     notes
@@ -206,7 +216,7 @@ mod tests {
 
     use super::super::floor::Signal;
     use super::super::generator::Generator;
-    use super::super::hypothesis::{Fit, Hypothesis};
+    use super::super::hypothesis::Hypothesis;
     use super::*;
 
     fn candidate(name: &str, score: f64) -> Candidate {
@@ -260,6 +270,7 @@ mod tests {
         assert!(diagnosis.causes[0].probability < 0.5);
         let [.., why] = &diagnosis.notes[..] else { panic!("it says why") };
         assert!(why.contains("15.8 floors of 20.0"), "{why}");
+        assert!(why.starts_with("leakage-drift (all)"), "{why}");
     }
 
     #[test]

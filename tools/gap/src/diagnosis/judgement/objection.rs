@@ -32,7 +32,7 @@ impl Findings {
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
 
-    /// The causes that are believed where this is said.
+    /// Effects of the causes that are believed where this is said.
     fn names(&self) -> Vec<&'static str> {
         let pair = self.pair.first().into_iter().flatten();
         self.single.first().into_iter().chain(pair).map(Candidate::name).collect()
@@ -45,7 +45,7 @@ impl Findings {
         signals.map(move |((before, after), explained)| Objection {
             times: excess(&names, [before, after], explained),
             why: format!(
-                "it leaves {:.1} floors of {:.1} of the {} of {}",
+                "{:.1} floors of {:.1} are left of the {} of {}",
                 after.square.sqrt(),
                 before.square.sqrt(),
                 after.signal,
@@ -59,7 +59,7 @@ impl Findings {
         self.echoes.iter().map(move |echo| Objection {
             times: echoing(&names, echo),
             why: format!(
-                "what it leaves of the {} of {} is what it explains of it, moved in time ({:.0} nats)",
+                "what is left of the {} of {} is what is explained of it, moved in time ({:.0} nats)",
                 echo.signal, echo.generator, echo.nats
             ),
         })
@@ -70,7 +70,7 @@ impl Findings {
         let furthest = self.shifts.iter().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
         furthest.map(|(knob, by)| Objection {
             times: (by / SHIFT).powi(2),
-            why: format!("a tolerance, {knob}, would have to be {:.1} times as wide", by.abs()),
+            why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
         })
     }
 

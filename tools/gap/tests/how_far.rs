@@ -21,6 +21,7 @@ fn cause_of(effect: &'static Effect, scope: Scope, parameters: Vec<Estimate>) ->
     Cause {
         effect,
         scope,
+        scopes: vec![(scope, 1.0)],
         probability: 0.9,
         parameters,
         class: vec![effect.name],

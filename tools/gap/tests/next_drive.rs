@@ -35,6 +35,7 @@ fn cause(name: &str, probability: f64, value: f64) -> Cause {
     Cause {
         effect,
         scope: "all".parse().unwrap(),
+        scopes: Vec::new(),
         probability,
         parameters: vec![Estimate { name: effect.parameters[0].name, value: [value; 3] }],
         class: vec![effect.name],

@@ -51,6 +51,7 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
     let cause = |name: &str, probability| Cause {
         effect: find(name).unwrap(),
         scope: "front".parse().unwrap(),
+        scopes: vec![("front".parse().unwrap(), 0.7), ("FR".parse().unwrap(), 0.3)],
         probability,
         parameters: vec![Estimate {
             name: find(name).unwrap().parameters[0].name,
@@ -135,8 +136,8 @@ fn a_page_is_whole_and_of_itself() {
 #[test]
 fn a_page_says_the_verdict_and_both_causes() {
     let page = page(Verdict::Effect);
-    let words = "arm-delay at the front axle (probability 93 %), and leakage-drift at the front axle \
-                 (probability 71 %).";
+    let words = "arm-delay at the front axle or wheel FR (probability 93 %), and leakage-drift at the \
+                 front axle or wheel FR (probability 71 %).";
     assert!(page.contains(words));
     assert_eq!(headline(&diagnosis(Verdict::Effect)), words);
     for part in ["noise floors", "horizon, s", "time, s", "with the causes put in"] {
@@ -155,7 +156,8 @@ fn the_same_answer_gives_the_same_bytes() {
 fn words_for_a_terminal_say_what_the_page_says() {
     let words = text(&diagnosis(Verdict::Effect));
     for part in [
-        "arm-delay at the front axle (probability 93 %)",
+        "arm-delay at the front axle or wheel FR (probability 93 %)",
+        "wheels not told apart: the front axle (70 %), wheel FR (30 %)",
         "0.210 (0.190 to 0.230)",
         "not to be told from valve-lag",
         "-20 % (60 % to 85 %) over whole runs",

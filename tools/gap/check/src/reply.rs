@@ -26,6 +26,8 @@ pub struct Named {
     /// Its wheels.
     #[serde(serialize_with = "as_text")]
     pub scope: Scope,
+    /// Share of its probability that is at these wheels; `None` from who states none.
+    pub scope_share: Option<f64>,
     /// Its probability; `None` from who states none.
     pub probability: Option<f64>,
     /// Whether it is stood by.
@@ -56,6 +58,7 @@ impl From<&Diagnosis> for Reply {
         let named = |cause: &Cause| Named {
             effect: cause.effect,
             scope: cause.scope,
+            scope_share: cause.scopes.first().map(|(_, share)| *share),
             probability: Some(cause.probability),
             stands: cause.probability > 0.5,
             like: cause

@@ -4,6 +4,7 @@ mod calibration;
 mod curve;
 mod rate;
 
+use calibration::scope_statement;
 pub use calibration::{
     Bin, Statement, calibration_error, error_by_chance, reliability, statements,
 };
@@ -28,6 +29,8 @@ pub fn scores(cases: &[(&Truth, &Reply)]) -> Scores {
     let nameable: Vec<_> = cases.iter().filter(|(truth, _)| truth.is_nameable()).collect();
     let of_kind = |kind| cases.iter().filter(move |(truth, _)| truth.kind == kind);
     let all: Vec<Statement> = cases.iter().flat_map(|(t, r)| statements(t, r)).collect();
+    let wheels: Vec<Statement> =
+        nameable.iter().filter_map(|(t, r)| scope_statement(t, r)).collect();
     vec![
         ("top-1", Score::share(nameable.iter().map(|(t, r)| first(t, r, 1)))),
         (
@@ -71,6 +74,10 @@ pub fn scores(cases: &[(&Truth, &Reply)]) -> Scores {
         (
             "calibration error",
             if all.is_empty() { Score::unsaid() } else { Score::of(&all, calibration_error) },
+        ),
+        (
+            "calibration error of wheels",
+            if wheels.is_empty() { Score::unsaid() } else { Score::of(&wheels, calibration_error) },
         ),
     ]
 }
@@ -150,6 +157,7 @@ mod tests {
         let named = |&(effect, scope, p): &(&str, &str, f64)| Named {
             effect: find(effect).unwrap(),
             scope: scope.parse::<Scope>().unwrap(),
+            scope_share: Some(0.9),
             probability: Some(p),
             stands: p > 0.5,
             like: Vec::new(),
@@ -170,6 +178,7 @@ mod tests {
         let scores = scores(&[(&truth, &reply)]);
         assert_eq!(value(&scores, "top-1"), 1.0);
         assert_eq!(value(&scores, "effect and scope"), 0.0);
+        assert!((value(&scores, "calibration error of wheels") - 0.9).abs() < 1e-12);
         assert!((value(&scores, "probability on the true cause") - 0.9).abs() < 1e-12);
         assert!(value(&scores, "null false alarms").is_nan());
     }

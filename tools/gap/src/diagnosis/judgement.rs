@@ -6,10 +6,9 @@
 //! which of the catalogue is it.
 
 mod allowed;
+mod causes;
 mod objection;
 mod places;
-
-use std::collections::BTreeMap;
 
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
@@ -17,26 +16,15 @@ use super::excitation::not_testable;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
-use super::verdict::{Beginning, Cause, Diagnosis, Estimate, Verdict};
+use super::verdict::{Diagnosis, Verdict};
+use causes::causes;
 use objection::Objection;
 use places::places;
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
 const SOMETHING: [f64; 2] = [18.0, 4.0];
-/// The same of a second cause beside the first, and the share of the first's evidence by which that
-/// rises where another law of the first could explain all of the second's: what a large cause leaves,
-/// another law takes for a second one.
-const SECOND: [f64; 2] = [28.0, 5.0];
-const SECOND_SHARE: f64 = 0.08;
 /// What may be left over, in floors, where something and unknown are as likely, and how sharply.
 const UNKNOWN: [f64; 2] = [1.2, 10.0];
-/// Share of the best evidence, nats, by which evidence is taken to be uncertain.
-const TEMPERATURE_SHARE: f64 = 0.03;
-/// Effects this much less likely than the best, as a factor, are in its class.
-const CLASS: f64 = 0.2;
-/// Causes that are listed.
-const LISTED: usize = 10;
-
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
@@ -111,73 +99,6 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         notes: notes(inquiry, findings, verdict),
         seconds: 0.0,
     }
-}
-
-/// Causes with their probabilities; `known` is shared among those of one rank.
-fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
-    let ranks: Vec<Vec<&Candidate>> = match findings.pair.first() {
-        None => vec![findings.single.iter().collect()],
-        Some([first, _]) => {
-            let name = first.fit.hypothesis.effect;
-            let own = findings.single.iter().filter(|c| c.fit.hypothesis.effect == name);
-            let firsts = std::iter::once(first).chain(own.skip(1)).collect();
-            vec![firsts, findings.pair.iter().map(|[_, second]| second).collect()]
-        }
-    };
-    let rank = |(k, rank): (usize, &Vec<&Candidate>)| {
-        let is_there = if k == 0 { 1.0 } else { is_second(rank[0], findings.evidence()) };
-        shares(rank, known * is_there)
-    };
-    let mut causes: Vec<Cause> = ranks.iter().enumerate().flat_map(rank).collect();
-    causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    causes.truncate(LISTED);
-    causes
-}
-
-/// Probability that a second cause is there beside a first of so many nats.
-fn is_second(second: &Candidate, first_nats: f64) -> f64 {
-    let shared = SECOND_SHARE * (1.0 - second.own_share) * first_nats;
-    turned(second.second_score(), [SECOND[0] + shared, SECOND[1]])
-}
-
-/// One cause for each effect, at its best scope, with the probability of all its scopes.
-fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
-    let best = rank.first().map_or(0.0, |best| best.score());
-    let temperature = 1.0 + TEMPERATURE_SHARE * best.max(0.0);
-    let mut of: BTreeMap<&str, (f64, &Candidate)> = BTreeMap::new();
-    for candidate in rank {
-        let weight = ((candidate.score() - best) / temperature).exp();
-        of.entry(candidate.name())
-            .and_modify(|(sum, _)| *sum += weight)
-            .or_insert((weight, candidate));
-    }
-    let total: f64 = of.values().map(|(weight, _)| weight).sum();
-    let class = |weight: f64, name: &'static str| {
-        let near =
-            of.values().filter(|(other, _)| *other > CLASS * weight && weight > CLASS * other);
-        let others = near.map(|(_, c)| c.name()).filter(|other| *other != name);
-        std::iter::once(name).chain(others).collect()
-    };
-    let cause = |&(weight, candidate): &(f64, &Candidate)| {
-        let fit = &candidate.fit;
-        Cause {
-            effect: fit.hypothesis.effect,
-            scope: fit.hypothesis.scope,
-            probability: known * weight / total,
-            parameters: estimates(candidate),
-            class: class(weight, candidate.name()),
-            begins: (fit.from_s > 0.0)
-                .then(|| Beginning { run: "every run".to_owned(), at_s: fit.from_s }),
-            shrink: None,
-        }
-    };
-    of.values().map(cause).collect()
-}
-
-fn estimates(candidate: &Candidate) -> Vec<Estimate> {
-    let fit = &candidate.fit;
-    let parameters = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
-    parameters.map(|(p, (value, sigma))| Estimate::new(p, *value, *sigma)).collect()
 }
 
 fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
@@ -339,13 +260,6 @@ mod tests {
             .map(|c| c.effect.name)
             .collect();
         assert_eq!(stood, ["arm-delay", "payload"]);
-    }
-
-    #[test]
-    fn a_second_cause_has_to_foretell_what_it_explains() {
-        let second = |held| Candidate { held_gain: Some(held), ..candidate("pressure-bias", 35.0) };
-        assert!(is_second(&second(2.0), 110.0) < 0.4);
-        assert!(is_second(&second(12.0), 110.0) > 0.9);
     }
 
     #[test]

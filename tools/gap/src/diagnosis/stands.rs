@@ -36,6 +36,7 @@ mod tests {
         Cause {
             effect,
             scope: "all".parse().unwrap(),
+            scopes: Vec::new(),
             probability,
             parameters: vec![Estimate { name: effect.parameters[0].name, value }],
             class: vec![effect.name],

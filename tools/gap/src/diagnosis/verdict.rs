@@ -69,7 +69,10 @@ pub struct Cause {
     /// Its wheels.
     #[serde(serialize_with = "as_text")]
     pub scope: Scope,
-    /// Calibrated, 0 to 1.
+    /// Wheels that it may be at, `scope` first, each with its share of the probability, 0 to 1.
+    #[serde(serialize_with = "by_wheels")]
+    pub scopes: Vec<(Scope, f64)>,
+    /// That this effect is at work at any wheels; calibrated, 0 to 1.
     pub probability: f64,
     /// Each parameter with its interval.
     #[serde(serialize_with = "by_name")]
@@ -187,4 +190,8 @@ fn name_of<S: Serializer>(effect: &&'static Effect, to: S) -> Result<S::Ok, S::E
 
 fn by_name<S: Serializer>(all: &[Estimate], to: S) -> Result<S::Ok, S::Error> {
     to.collect_map(all.iter().map(|estimate| (estimate.name, estimate.value)))
+}
+
+fn by_wheels<S: Serializer>(all: &[(Scope, f64)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(all.iter().map(|(scope, share)| (scope.to_string(), share)))
 }

@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use super::svg::escape;
-use super::words::{on, percent, short, shrinks};
+use super::words::{elsewhere, on, percent, short, shrinks};
 use crate::diagnosis::{Cause, Details, Diagnosis, Shrink};
 
 /// Causes listed.
@@ -19,7 +19,7 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
             percent(cause.probability),
             escape(cause.effect.name),
             escape(cause.effect.meaning),
-            if cause.effect.has_scope() { on(cause.scope) } else { "–".to_owned() },
+            wheels(cause),
             parameters(cause),
             escape(&others(cause)),
             cause.shrink.as_ref().map_or_else(|| "–".to_owned(), shrink),
@@ -35,6 +35,14 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
     format!(
         "<table><thead><tr><th>probability</th><th>cause</th><th>where</th><th>size (90 % interval)</th><th>not to be told from</th><th>shrinks the gap by</th></tr></thead><tbody>{rows}</tbody></table>"
     )
+}
+
+fn wheels(cause: &Cause) -> String {
+    match cause.scopes.len() {
+        _ if !cause.effect.has_scope() => "–".to_owned(),
+        0 | 1 => on(cause.scope),
+        _ => elsewhere(cause),
+    }
 }
 
 fn parameters(cause: &Cause) -> String {

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use super::words::{estimate, headline, percent, short, shrink};
+use super::words::{elsewhere, estimate, headline, percent, short, shrink};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -94,6 +94,9 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
         if cause.class.len() > 1 {
             let _ =
                 writeln!(out, "{:>11}  not to be told from {}", "", cause.class[1..].join(", "));
+        }
+        if cause.scopes.len() > 1 {
+            let _ = writeln!(out, "{:>11}  wheels not told apart: {}", "", elsewhere(cause));
         }
         if let Some(begins) = &cause.begins {
             let _ = writeln!(out, "{:>11}  begins {:.1} s into {}", "", begins.at_s, begins.run);

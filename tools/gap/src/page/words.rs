@@ -5,6 +5,9 @@ use xt28_sim::effects::Scope;
 
 use crate::diagnosis::{Cause, Diagnosis, Estimate, Shrink, Verdict};
 
+/// Share of a cause's probability above which wheels that it may be at are in the headline.
+const SAID_ABOVE: f64 = 0.2;
+
 /// The verdict in one sentence.
 #[must_use]
 pub fn headline(diagnosis: &Diagnosis) -> String {
@@ -31,8 +34,14 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
 
 /// An effect with its wheels and probability.
 fn cause(cause: &Cause) -> String {
-    let whose =
-        if cause.effect.has_scope() { format!(" at {}", on(cause.scope)) } else { String::new() };
+    let others = cause.scopes.iter().skip(1).filter(|(_, share)| *share > SAID_ABOVE);
+    let wheels: Vec<String> =
+        std::iter::once(cause.scope).chain(others.map(|(scope, _)| *scope)).map(on).collect();
+    let whose = if cause.effect.has_scope() {
+        format!(" at {}", wheels.join(" or "))
+    } else {
+        String::new()
+    };
     format!("{}{whose} (probability {})", cause.effect.name, percent(cause.probability))
 }
 
@@ -47,6 +56,12 @@ pub(super) fn on(scope: Scope) -> String {
         Scope::Side(Side::Right) => "the right side".to_owned(),
         Scope::Wheel(wheel) => format!("wheel {wheel}"),
     }
+}
+
+/// All wheels that a cause may be at, each with its share of the probability.
+pub(super) fn elsewhere(cause: &Cause) -> String {
+    let each = |(scope, share): &(Scope, f64)| format!("{} ({})", on(*scope), percent(*share));
+    cause.scopes.iter().map(each).collect::<Vec<_>>().join(", ")
 }
 
 /// A share of one in percent; never a certainty that a finite log cannot give.

@@ -48,5 +48,15 @@ fn named((effect, shifts): (&'static Effect, PerWheel<f64>)) -> (f64, Named) {
     } else {
         Scope::All
     };
-    (most, Named { effect, scope, probability: None, stands: false, like: Vec::new() })
+    (
+        most,
+        Named {
+            effect,
+            scope,
+            scope_share: None,
+            probability: None,
+            stands: false,
+            like: Vec::new(),
+        },
+    )
 }

@@ -45,6 +45,7 @@ pub(super) fn reply(inquiry: &Inquiry) -> Reply {
         Named {
             effect: h.effect,
             scope: h.scope,
+            scope_share: None,
             probability: Some(probability),
             stands: probability > 0.5,
             like: Vec::new(),

@@ -59,6 +59,13 @@ pub fn statements(truth: &Truth, reply: &Reply) -> Vec<Statement> {
     all
 }
 
+/// What a reply states of the wheels of its likeliest cause, where that is the right effect and has any.
+pub(super) fn scope_statement(truth: &Truth, reply: &Reply) -> Option<Statement> {
+    let first = reply.cause(0).filter(|c| c.effect.has_scope() && truth.has(c.effect))?;
+    let is_true = truth.has_at(first.effect, first.scope);
+    Some(Statement { probability: first.scope_share?, is_true })
+}
+
 /// Statements by probability in bins of equal count; statements of one probability stay together.
 #[must_use]
 pub fn reliability(statements: &[Statement]) -> Vec<Bin> {

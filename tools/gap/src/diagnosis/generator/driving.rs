@@ -128,10 +128,10 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
     moving_mean(&errors, FORCE_S)
 }
 
-/// Sine of the grade that the machine climbs: each frame climbs along its own heading, by its share of
-/// the weight.
+/// Sine of the grade that the machine climbs at sample `i`: each frame climbs along its own heading, by
+/// its share of the weight.
 #[allow(clippy::cast_precision_loss)]
-fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i: usize) -> f64 {
+pub(super) fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i: usize) -> f64 {
     let front = signals.heading_at(i as f64 * DT_S).map_or(0.0, |[heading, _]| heading);
     let middle = front - signals.joint_rad[0][i];
     let rear = middle - signals.joint_rad[1][i];

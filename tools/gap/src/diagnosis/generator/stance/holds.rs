@@ -1,16 +1,17 @@
-//! How hard idle motors hold their wheels: each against its own turning, all together against nothing
-//! but what the pumps still push.
+//! How hard idle motors hold their wheels: each against its own turning, all together against what the
+//! ground's slope pulls and the pumps do not push.
 //!
 //! An arm that swings at standstill wants its wheel to roll. The machine moves to where the wheels'
 //! holds balance, so that each wheel rolls by its arm's swing less that of all. A hold builds up over
 //! a little rolling, then slips, and stays when the arms come to rest. Wheel speeds are read too
 //! coarsely for this (7 mm/s at the rim), strokes are not.
 
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
 use super::motion::{lagged, unflickered};
+use crate::diagnosis::generator::driving::climbs;
 use crate::diagnosis::generator::press::{normal_n, own_n};
 use crate::diagnosis::signals::{Samples, Signals};
 
@@ -55,6 +56,8 @@ impl Holds {
             return None;
         }
         let rims = PerWheel::from_fn(|w| Rim::new(s, machine, parts, w));
+        let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
+        let pull_nm = mass_kg * GRAVITY_M_S2 * parts.radius_m;
         let resisting = machine.wheels.rolling_resistance / machine.wheels.friction;
         let (mut held, mut resting) = (PerWheel::splat(0.0), COMES_TO_REST);
         let mut swung_m = 0.0_f64;
@@ -74,8 +77,9 @@ impl Holds {
                 let grip_nm = rims[w].grip_nm[k];
                 most_nm[w].abs().min(grip_nm) + resisting * grip_nm
             });
-            let pushed_nm = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
-            held = balanced(&wanted, &weight_nm, pushed_nm);
+            let pushed_nm: f64 = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
+            let pulled_nm = pull_nm * climbs(s, machine, effects, i);
+            held = balanced(&wanted, &weight_nm, pushed_nm - pulled_nm);
             // How the wheels were held when they came to rest is not known.
             let is_known = swung_m > SWUNG_M;
             steps.push(if is_known { held } else { PerWheel::splat(0.0) });
@@ -108,11 +112,11 @@ impl Rim {
     }
 }
 
-/// Shares nearest to `wanted`, all less by the same, whose torques come to `pushed_nm`.
-fn balanced(wanted: &PerWheel<f64>, weight_nm: &PerWheel<f64>, pushed_nm: f64) -> PerWheel<f64> {
+/// Shares nearest to `wanted`, all less by the same, whose torques come to `sum_nm`.
+fn balanced(wanted: &PerWheel<f64>, weight_nm: &PerWheel<f64>, sum_nm: f64) -> PerWheel<f64> {
     let less = |by: f64| wanted.map(|share| (share - by).clamp(-1.0, 1.0));
     let excess_nm =
-        |by: f64| less(by).iter().map(|(w, share)| share * weight_nm[w]).sum::<f64>() - pushed_nm;
+        |by: f64| less(by).iter().map(|(w, share)| share * weight_nm[w]).sum::<f64>() - sum_nm;
     let reach = 1.0 + wanted.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max);
     let (mut low, mut high) = (-reach, reach);
     for _ in 0..BISECTIONS {

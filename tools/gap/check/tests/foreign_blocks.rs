@@ -1,9 +1,9 @@
-//! What the arms of foreign machines say of their own fault, without the rest of the machine.
+//! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
 use xt28_gap::diagnosis::{Evidence, Fit, Generator, Hypothesis, Knob, Signals};
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
-use xt28_machine::{Machine, Side, Wheel};
+use xt28_machine::{Axle, Machine, Side, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::{self, find};
 
@@ -72,6 +72,22 @@ fn what_an_arm_leaves_open_another_run_may_tell() {
     assert!(suiting.log_evidence > 0.9 * alone.log_evidence, "{alone:?} {suiting:?}");
     assert!(foretold[1] > foretold[0] + 20.0, "{foretold:?}");
     assert!((suiting.values[1] / 2.889e6 - 1.0).abs() < 0.1, "{suiting:?}");
+}
+
+#[test]
+fn idle_motors_on_a_slope_hold_what_it_pulls() {
+    let case = Case::draw(3_768_813_181, Kind::Pair);
+    let run = |manoeuvre| signals(case.only(manoeuvre, 32.0));
+    let runs = [run(Manoeuvre::ArmStep), run(Manoeuvre::Multisine)].concat();
+    let watched = vec![Generator::Stance];
+    let of = |name, scope| Hypothesis { effect: find(name).unwrap(), scope };
+    let slope = of("terrain-slope", effects::Scope::All);
+    let sloping = slope.applied(&Effects::default(), &[-0.0274, -0.0113]);
+    let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), sloping, &Knob::all());
+    let drag = of("standstill-drag", effects::Scope::Axle(Axle::Rear));
+    let fit = drag.refit(&evidence, 0.0, &[3.0e3]);
+    assert!(fit.log_evidence > 10.0, "{fit:?}");
+    assert!((2.9e3..4.9e3).contains(&fit.values[0]), "{fit:?}");
 }
 
 #[test]

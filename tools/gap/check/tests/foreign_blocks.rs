@@ -1,6 +1,6 @@
 //! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
-use xt28_gap::diagnosis::{Evidence, Fit, Generator, Hypothesis, Knob, Signals};
+use xt28_gap::diagnosis::{Base, Evidence, Fit, Generator, Hypothesis, Knob, Signals};
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
 use xt28_machine::{Axle, Machine, Side, Wheel};
@@ -102,9 +102,25 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
         let hypothesis = Hypothesis { effect: find(effect).unwrap(), scope };
         let fit = hypothesis.refit(&evidence, 0.0, &[0.18]);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
-        evidence.echoes(&effects)[0]
+        evidence.echoes(&effects, &Effects::default())[0]
     };
     let [late, slow] = ["arm-delay", "valve-lag"].map(echo);
     assert!(slow.explained > 0.7 * late.explained, "{late:?} {slow:?}");
     assert!(late.nats < 3.0 && slow.nats > 12.0, "{late:?} {slow:?}");
+}
+
+#[test]
+fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
+    let case = Case::draw(3_331_623_976, Kind::Pair);
+    let runs = signals(case.only(Manoeuvre::ArmStep, 32.0));
+    let of = |name, scope| Hypothesis { effect: find(name).unwrap(), scope };
+    let deadband = of("valve-deadband", effects::Scope::All);
+    let nothing = Effects::default();
+    let base = Base { effects: deadband.applied(&nothing, &[0.0345]), since_s: 10.3 };
+    let scale = of("stroke-scale", effects::Scope::Wheel(Wheel::Fr));
+    let both = scale.applied(&base.effects, &[1.0431]);
+    let watched = vec![Generator::ArmStroke(Wheel::Fr)];
+    let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), base, &Knob::all());
+    let echo = evidence.echoes(&both, &nothing)[0];
+    assert!(echo.explained > 1.0e4 && echo.nats < 10.0, "{echo:?}");
 }

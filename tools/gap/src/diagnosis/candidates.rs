@@ -137,10 +137,11 @@ impl<'a> Docket<'a> {
         self.fit.left(Belief { effects: &effects, from_s })
     }
 
-    /// How much of what is left there is what `fits` explain, moved in time.
-    pub(super) fn echoes(&self, fits: &[&Fit]) -> Vec<Echo> {
+    /// How much of what is left there is what `fits` and the base explain of what `nothing` leaves, moved
+    /// in time.
+    pub(super) fn echoes(&self, fits: &[&Fit], nothing: &Effects) -> Vec<Echo> {
         let (effects, from_s) = self.believing(fits);
-        self.fit.echoes(Belief { effects: &effects, from_s })
+        self.fit.echoes(Belief { effects: &effects, from_s }, nothing)
     }
 
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.

@@ -79,13 +79,18 @@ impl Inquiry {
         let (pair, beside) = self.second(&docket, &single);
         tell("looking at what is left", 0.7);
         let (pair, after) = owned(pair, &first, &beside);
-        let (believed, after, shifts) = match pair.first() {
+        let nothing = &self.believed;
+        let (believed, after, shifts, echoes) = match pair.first() {
             Some([one, second]) => {
-                (vec![&one.fit, &second.fit], after, beside.shifts(&[&second.fit]))
+                let (both, second) = (vec![&one.fit, &second.fit], &[&second.fit]);
+                (both, after, beside.shifts(second), beside.echoes(second, nothing))
             }
-            None => (vec![&best.fit], first.left(&[&best.fit]), first.shifts(&[&best.fit])),
+            None => {
+                let one = &[&best.fit];
+                (one.to_vec(), first.left(one), first.shifts(one), first.echoes(one, nothing))
+            }
         };
-        let (apart, echoes) = (first.apart(&believed, SHIFT_MAX), first.echoes(&believed));
+        let apart = first.apart(&believed, SHIFT_MAX);
         Findings { unbent, alone, apart, single, pair, after, echoes, shifts }
     }
 

@@ -202,14 +202,16 @@ impl<'a> Evidence<'a> {
         all
     }
 
-    /// How much of what is left on each signal is what `belief` explains there, moved in time.
+    /// How much of what `belief` leaves on each signal is what it explains of what `nothing` leaves, moved
+    /// in time.
     #[must_use]
-    pub fn echoes<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Echo> {
+    pub fn echoes<'e>(&self, belief: impl Into<Belief<'e>>, nothing: &Effects) -> Vec<Echo> {
         let (values, _, step) = self.answers(belief.into());
-        let each = self.watches.iter().zip(values);
-        each.flat_map(|(watch, believed)| {
+        let each = self.watches.par_iter().zip(values);
+        each.flat_map_iter(|(watch, believed)| {
+            let unexplained = watch.values(self.runs, &self.machine, nothing.into());
             let left = watch.bent(believed.clone(), &step);
-            watch.echoes(&believed, &left)
+            watch.echoes([&unexplained, &believed], &left)
         })
         .collect()
     }

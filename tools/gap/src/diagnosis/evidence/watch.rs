@@ -154,11 +154,12 @@ impl Watch {
         self.stack.groups.iter().enumerate().map(steady).collect()
     }
 
-    /// How much of what each group leaves is what it explains, moved in time: `believed` are residuals
-    /// under a belief, `left` the same once tolerances have gone where they go. Samples that are as they
-    /// were, of which the belief says nothing or no longer can, are holes.
-    pub(super) fn echoes(&self, believed: &[f64], left: &[f64]) -> Vec<Echo> {
-        let Stack { generator, ref values, ref group, ref at_s, ref groups, .. } = self.stack;
+    /// How much of what each group leaves is what is explained there, moved in time: `values` are residuals
+    /// while nothing is believed, `believed` those under a belief, `left` the same once tolerances have
+    /// gone where they go. Samples that are as they were, of which the belief says nothing or no longer
+    /// can, are holes.
+    pub(super) fn echoes(&self, [values, believed]: [&[f64]; 2], left: &[f64]) -> Vec<Echo> {
+        let Stack { generator, ref group, ref at_s, ref groups, .. } = self.stack;
         let follows = |a: &usize, b: &usize| (at_s[*b] - at_s[*a] - STEP_S).abs() < 0.5 * STEP_S;
         let echo = |(index, &Group { signal, samples }): (usize, &Group)| {
             let own = |i: &usize| group[*i] == index && values[*i] != believed[*i];

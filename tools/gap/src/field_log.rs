@@ -179,8 +179,10 @@ impl Intake {
         let first = *self.first.get_or_insert(record.at);
         if record.at < self.latest {
             let by_s = (self.latest - record.at).as_secs_f64();
-            let (_, most_s, frames) = self.back.get_or_insert((line, 0.0, 0));
-            *most_s = most_s.max(by_s);
+            let (worst_line, most_s, frames) = self.back.get_or_insert((line, by_s, 0));
+            if by_s > *most_s {
+                (*worst_line, *most_s) = (line, by_s);
+            }
             *frames += 1;
             return;
         }

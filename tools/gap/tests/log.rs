@@ -122,6 +122,19 @@ fn a_clock_that_jumps_back_is_a_fault_with_its_line() {
 }
 
 #[test]
+fn of_two_jumps_back_the_larger_is_told_with_its_own_line() {
+    let mut lines: Vec<String> = log().lines().map(str::to_owned).collect();
+    lines[450] = lines[450].replace("(10.500000)", "(10.480000)");
+    for line in &mut lines[600..] {
+        *line = line.replace("(1", "(0");
+    }
+    let log = read(&(lines.join("\n") + "\n")).unwrap();
+    let mut faults = log.faults().iter();
+    let back = faults.find(|fault| matches!(fault.kind, FaultKind::ClockBack { .. })).unwrap();
+    assert_eq!(back.line, 601, "{back}");
+}
+
+#[test]
 fn lost_frames_are_counted_by_message() {
     let mut tick = 0;
     let kept: String = log()

@@ -14,6 +14,7 @@ mod pump;
 mod rolling;
 mod scrub;
 mod stance;
+mod summed;
 mod travel;
 
 use core::fmt;

@@ -1,7 +1,8 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
+mod receiver;
+
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
 use xt28_ecus::pins;
@@ -80,8 +81,9 @@ pub struct Signals {
     pub pitch_rad: Samples,
     /// Antenna, east and north, with the instants of its fixes: s, m, m.
     pub fixes: Vec<[f64; 3]>,
-    /// Heading with its rate at those instants: rad, unwound, counter-clockwise from east; rad/s.
-    pub headings: Vec<[f64; 2]>,
+    /// Heading with its rate, with the instants at which they were told, which need not be those of fixes:
+    /// s, rad, unwound, counter-clockwise from east, rad/s.
+    pub headings: Vec<[f64; 3]>,
     /// Made of the above when first asked for.
     instants: OnceLock<Vec<Instant>>,
 }
@@ -167,22 +169,10 @@ impl Signals {
             pump_pressure_pa: PumpSide::ALL.map(|side| sample(Channel::PumpPressure(side))),
             roll_rad: sample(Channel::Roll),
             pitch_rad: sample(Channel::Pitch),
-            fixes: fixes(series),
-            headings: headings(series),
+            fixes: receiver::fixes(series),
+            headings: receiver::headings(series),
             instants: OnceLock::new(),
         })
-    }
-
-    /// Heading and its rate at `at_s`, rad and rad/s; none without a receiver that says them.
-    #[must_use]
-    pub fn heading_at(&self, at_s: f64) -> Option<[f64; 2]> {
-        let k = self.fixes.partition_point(|fix| fix[0] < at_s);
-        if k == 0 || k >= self.headings.len().min(self.fixes.len()) {
-            return None;
-        }
-        let share = (at_s - self.fixes[k - 1][0]) / (self.fixes[k][0] - self.fixes[k - 1][0]);
-        let ([a, _], [b, rate]) = (self.headings[k - 1], self.headings[k]);
-        Some([a + share * (b - a), rate])
     }
 
     /// The instants at which the stance is judged. They need of a machine only where its axles and
@@ -347,38 +337,6 @@ fn uncut(reading: &Samples) -> Samples {
                 (Some((_, value)), None) | (None, Some(&(_, value))) => value,
                 (None, None) => middle(reading[i]),
             }
-        })
-        .collect()
-}
-
-fn fixes(all: &AllSeries) -> Vec<[f64; 3]> {
-    let (Some(east), Some(north)) = (all.get(&Channel::East), all.get(&Channel::North)) else {
-        return Vec::new();
-    };
-    east.iter().filter_map(|(at_s, x)| Some([at_s, x, north.at(at_s)?])).collect()
-}
-
-/// Headings unwound, with their slope over a second.
-fn headings(all: &AllSeries) -> Vec<[f64; 2]> {
-    const SPAN: usize = 4;
-    let Some(series) = all.get(&Channel::Heading) else { return Vec::new() };
-    let (mut turned, mut last) = (0.0, None);
-    let unwound: Vec<[f64; 2]> = series
-        .iter()
-        .map(|(at_s, heading)| {
-            let before = last.replace(heading).unwrap_or(heading);
-            let step = heading - before;
-            turned += step - TAU * (step / TAU).round();
-            [at_s, turned]
-        })
-        .collect();
-    let first = series.iter().next().map_or(0.0, |(_, heading)| heading);
-    let first = first - TAU * (first / TAU).round();
-    let end = unwound.len().saturating_sub(1);
-    (0..unwound.len())
-        .map(|k| {
-            let (a, b) = (unwound[k.saturating_sub(SPAN)], unwound[(k + SPAN).min(end)]);
-            [first + unwound[k][1], if b[0] > a[0] { (b[1] - a[1]) / (b[0] - a[0]) } else { 0.0 }]
         })
         .collect()
 }

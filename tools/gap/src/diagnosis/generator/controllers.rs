@@ -3,10 +3,13 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
+use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
 const STEER_WINDUP_DEG_S: f64 = 40.0;
+/// Halvings of a tenth of that, to a sixth of a thousandth of it.
+const HALVINGS: usize = 9;
 
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint less the one asked for.
 ///
@@ -40,6 +43,9 @@ pub(super) fn steer_opening_error(
 }
 
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint at every sample.
+///
+/// What the PI had summed up before the log began is in no log of a machine that was driving then: the
+/// sum that fits best is taken. A machine that stands has none.
 #[must_use]
 pub(super) fn steer_opening_asked(
     signals: &Signals,
@@ -47,32 +53,101 @@ pub(super) fn steer_opening_asked(
     effects: &Effects,
     joint: usize,
 ) -> Samples {
-    let (a, gain) = (&machine.articulation, effects.steering.gain);
-    let follower = effects.steering.rear_follower;
-    let (kp, ki) = (a.kp_per_deg * gain.kp_factor, a.ki_per_s * gain.ki_factor);
-    let deg = |rad: f64| rad.to_degrees();
-    let mut integral_deg_s = 0.0;
-    let mut followed_deg = signals.joint_rad[0].first().map_or(0.0, |rad| deg(*rad));
-    let step = |i: usize| {
-        let front_deg = deg(signals.joint_rad[0][i]);
-        followed_deg = if follower.time_constant_s > 0.0 {
-            front_deg + (followed_deg - front_deg) * (-DT_S / follower.time_constant_s).exp()
-        } else {
-            front_deg
+    let pi = Pi::new(signals, machine, effects, joint);
+    let stands = (0..signals.len).find(|i| pi.error_deg[*i].is_none());
+    let driving = stands.unwrap_or(signals.len);
+    pi.asked(signals.len, pi.best_sum(driving)).collect()
+}
+
+/// The steering PI (facts 5) on what it had before it.
+struct Pi<'a> {
+    kp_per_deg: f64,
+    ki_per_s: f64,
+    /// Target less angle; none where the machine is too slow to steer.
+    error_deg: Vec<Option<f64>>,
+    /// Openings logged.
+    logged: &'a [f64],
+}
+
+impl<'a> Pi<'a> {
+    fn new(signals: &'a Signals, machine: &Machine, effects: &Effects, joint: usize) -> Self {
+        let (a, gain) = (&machine.articulation, effects.steering.gain);
+        let follower = effects.steering.rear_follower;
+        let deg = |rad: f64| rad.to_degrees();
+        let mut followed_deg = signals.joint_rad[0].first().map_or(0.0, |rad| deg(*rad));
+        let error_deg = |i: usize| {
+            let front_deg = deg(signals.joint_rad[0][i]);
+            followed_deg = if follower.time_constant_s > 0.0 {
+                front_deg + (followed_deg - front_deg) * (-DT_S / follower.time_constant_s).exp()
+            } else {
+                front_deg
+            };
+            let speed_m_s = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
+            let target_deg = match joint {
+                0 => deg(signals.target_joint_rad[i]),
+                _ => a.rear_ratio * follower.ratio_factor * followed_deg,
+            };
+            let error_deg = target_deg - deg(signals.joint_rad[joint][i]);
+            (speed_m_s.abs() >= a.speed_threshold_m_s).then_some(error_deg)
         };
-        let speed_m_s = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
-        if speed_m_s.abs() < a.speed_threshold_m_s {
-            integral_deg_s = 0.0;
+        Self {
+            kp_per_deg: a.kp_per_deg * gain.kp_factor,
+            ki_per_s: a.ki_per_s * gain.ki_factor,
+            error_deg: (0..signals.len).map(error_deg).collect(),
+            logged: &signals.steer_opening[joint],
+        }
+    }
+
+    /// What is asked over the first `len` samples with `sum_deg_s` summed up before.
+    fn asked(&self, len: usize, mut sum_deg_s: f64) -> impl Iterator<Item = f64> {
+        self.error_deg[..len].iter().map(move |error_deg| {
+            let Some(error_deg) = error_deg else {
+                sum_deg_s = 0.0;
+                return 0.0;
+            };
+            sum_deg_s =
+                (sum_deg_s + error_deg * DT_S).clamp(-STEER_WINDUP_DEG_S, STEER_WINDUP_DEG_S);
+            (self.kp_per_deg * (error_deg + self.ki_per_s * sum_deg_s)).clamp(-1.0, 1.0)
+        })
+    }
+
+    /// The sum before the log by which the first `driving` samples fit best.
+    fn best_sum(&self, driving: usize) -> f64 {
+        if driving == 0 {
             return 0.0;
         }
-        let target_deg = match joint {
-            0 => deg(signals.target_joint_rad[i]),
-            _ => a.rear_ratio * follower.ratio_factor * followed_deg,
-        };
-        let error_deg = target_deg - deg(signals.joint_rad[joint][i]);
-        integral_deg_s =
-            (integral_deg_s + error_deg * DT_S).clamp(-STEER_WINDUP_DEG_S, STEER_WINDUP_DEG_S);
-        (kp * (error_deg + ki * integral_deg_s)).clamp(-1.0, 1.0)
-    };
-    (0..signals.len).map(step).collect()
+        best_sum(STEER_WINDUP_DEG_S, HALVINGS, |sum| {
+            self.asked(driving, sum).zip(self.logged).map(|(a, logged)| (a - logged).powi(2)).sum()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pi(logged: &[f64]) -> Pi<'_> {
+        let steering = (0..600).map(|i| Some(9.0 * (f64::from(i) * 0.02).sin()));
+        let stands = core::iter::repeat_n(None, 100);
+        let again = (0..300).map(|i| Some(4.0 - 0.01 * f64::from(i)));
+        let error_deg = steering.chain(stands).chain(again).collect();
+        Pi { kp_per_deg: 0.025, ki_per_s: 0.2, error_deg, logged }
+    }
+
+    #[test]
+    fn what_was_summed_up_before_a_log_that_begins_while_driving_is_found() {
+        for sum_deg_s in [-33.3, -7.0, 0.0, 18.8, 40.0] {
+            let logged: Vec<f64> = pi(&[]).asked(1000, sum_deg_s).collect();
+            let found = pi(&logged).best_sum(600);
+            assert!((found - sum_deg_s).abs() < 0.02, "{sum_deg_s}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_machine_that_stands_forgets_what_was_summed_up() {
+        let from = |sum_deg_s| pi(&[]).asked(1000, sum_deg_s).collect::<Vec<f64>>();
+        let [none, much] = [from(0.0), from(30.0)];
+        assert!(none[300] < much[300]);
+        assert_eq!(none[600..], much[600..]);
+    }
 }

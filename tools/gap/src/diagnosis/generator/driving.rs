@@ -132,7 +132,7 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
 /// its share of the weight.
 #[allow(clippy::cast_precision_loss)]
 pub(super) fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i: usize) -> f64 {
-    let front = signals.heading_at(i as f64 * DT_S).map_or(0.0, |[heading, _]| heading);
+    let front = signals.heading_near(i as f64 * DT_S).unwrap_or_default();
     let middle = front - signals.joint_rad[0][i];
     let rear = middle - signals.joint_rad[1][i];
     let (m, payload_kg) = (&machine.masses, effects.masses.payload.mass_kg);

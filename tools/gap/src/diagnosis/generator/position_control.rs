@@ -3,12 +3,15 @@
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
+use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Opening of one milliampere of an arm valve's current (facts 1.1: 400 mA from start to full).
 const STEP: f64 = 1.0 / 400.0;
 /// The mode in which the PI is at work: manual position.
 const MANUAL_POSITION: f64 = 2.0;
+/// Halvings in the search for what was summed up: to a hundredth of the most.
+const HALVINGS: usize = 3;
 
 /// Opening that the position PI would ask for less the one that was asked for; `NaN` in other modes.
 ///
@@ -68,28 +71,10 @@ impl Pi {
         }
     }
 
-    /// Errors from the sum at the beginning that makes the fewest: tenths of the windup, then halves
-    /// of halves about the best.
+    /// Errors from the sum at the beginning that makes the fewest.
     fn best_errors(&self, stretch: &Stretch<'_>) -> Samples {
         let square = |sum: f64| self.errors(stretch, sum).map(|e| e * e).sum::<f64>();
-        let mut best = (square(0.0), 0.0);
-        let mut step = 0.1 * self.windup_mm_s;
-        let consider = |best: &mut (f64, f64), sum: f64| {
-            let squares = square(sum);
-            if squares < best.0 {
-                *best = (squares, sum);
-            }
-        };
-        for tenth in (-10..=10).map(f64::from) {
-            consider(&mut best, tenth * step);
-        }
-        for _ in 0..3 {
-            step *= 0.5;
-            let middle = best.1;
-            consider(&mut best, middle - step);
-            consider(&mut best, middle + step);
-        }
-        self.errors(stretch, best.1).collect()
+        self.errors(stretch, best_sum(self.windup_mm_s, HALVINGS, square)).collect()
     }
 
     fn errors(&self, stretch: &Stretch<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {

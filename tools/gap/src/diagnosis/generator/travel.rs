@@ -48,7 +48,9 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     for k in back..s.fixes.len() {
         let ([t0, x0, y0], [t1, x1, y1]) = (s.fixes[k - back], s.fixes[k]);
         let (dx, dy) = (x1 - x0, y1 - y0);
-        let heading = s.heading_at(0.5 * (t0 + t1));
+        // Over fixes that are missing a heading in the middle says too little.
+        let near = t1 - t0 < 1.5 * WINDOW_S;
+        let heading = s.heading_at(0.5 * (t0 + t1)).filter(|_| near);
         let wheel_m_s = (rolled_at(t1) - rolled_at(t0)) / (t1 - t0);
         let (from, to) = ((t1 / DT_S) as usize, ((t1 + 0.125) / DT_S) as usize);
         let (mut along, mut angle) = (f64::NAN, f64::NAN);

@@ -248,7 +248,7 @@ impl<'a> Measured<'a> {
 
     /// Antenna, heading and its rate at `at_s`, between fixes; standing at the origin without any.
     fn fix_at(&self, at_s: f64) -> ([f64; 2], f64, f64) {
-        let (fixes, headings) = (&self.s.fixes, &self.s.headings);
+        let fixes = &self.s.fixes;
         let k = fixes.partition_point(|fix| fix[0] <= at_s);
         let (Some(after), Some(before)) = (fixes.get(k).or(fixes.last()), fixes.get(k.max(1) - 1))
         else {
@@ -258,11 +258,8 @@ impl<'a> Measured<'a> {
         let span_s = after[0] - before[0];
         let share = if span_s > 0.0 { ((at_s - before[0]) / span_s).clamp(0.0, 1.0) } else { 0.0 };
         let place = [1, 2].map(|axis| before[axis] + share * (after[axis] - before[axis]));
-        let [yaw, rate] = match self.s.heading_at(at_s) {
-            Some(heading) => heading,
-            None if k == 0 => headings.first().map_or([0.0; 2], |first| *first),
-            None => headings.last().map_or([0.0; 2], |last| *last),
-        };
+        let near = || [self.s.heading_near(at_s).unwrap_or_default(), 0.0];
+        let [yaw, rate] = self.s.heading_at(at_s).unwrap_or_else(near);
         (place, yaw, rate)
     }
 }

@@ -90,10 +90,11 @@ fn doubts(s: &Signals) -> Samples {
 /// Heading by the receiver, by wheels and joints where it says none, rad.
 #[allow(clippy::cast_precision_loss)]
 fn headings(s: &Signals, motion: &Motion) -> Samples {
-    let mut turned = s.headings.first().map_or(0.0, |heading| heading[0]);
+    let mut turned = s.headings.first().map_or(0.0, |heading| heading[1]);
     let step = |(i, rate): (usize, &f64)| {
-        turned += rate * DT_S;
-        s.heading_at(i as f64 * DT_S).map_or(turned, |[heading, _]| heading)
+        let told = s.heading_at(i as f64 * DT_S);
+        turned = told.map_or(turned + rate * DT_S, |[heading, _]| heading);
+        turned
     };
     motion.turn_rad_s.iter().enumerate().map(step).collect()
 }

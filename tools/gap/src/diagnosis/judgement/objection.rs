@@ -32,10 +32,9 @@ impl Findings {
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
 
-    /// Effects of the causes that are believed where this is said.
+    /// Effects of the causes that are believed.
     fn names(&self) -> Vec<&'static str> {
-        let pair = self.pair.first().into_iter().flatten();
-        self.single.first().into_iter().chain(pair).map(Candidate::name).collect()
+        self.believed().map(Candidate::name).collect()
     }
 
     fn signals_left(&self) -> impl Iterator<Item = Objection> {
@@ -90,9 +89,11 @@ impl Findings {
 #[cfg(test)]
 mod tests {
     use xt28_machine::Wheel;
+    use xt28_sim::effects::Scope;
 
     use super::super::super::floor::Signal;
     use super::super::super::generator::Generator;
+    use super::super::super::hypothesis::{Fit, Hypothesis};
     use super::super::super::knob::Knob;
     use super::*;
 
@@ -113,6 +114,24 @@ mod tests {
         assert!(echoing.why.contains("60 nats"), "{echoing:?}");
         assert!(bent.times > 1.5 && bent.why.contains(&knob.to_string()), "{bent:?}");
         assert!(of(1.0, 0.5).times < 0.5);
+    }
+
+    #[test]
+    fn a_vague_cause_that_is_no_longer_believed_excuses_nothing() {
+        let of = |name: &str| {
+            let effect = xt28_sim::effects::find(name).unwrap();
+            let values = effect.parameters.iter().map(|p| p.neutral).collect::<Vec<_>>();
+            let hypothesis = Hypothesis { effect, scope: Scope::All };
+            let sigma = vec![0.0; values.len()];
+            let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: 90.0 };
+            Candidate { fit, held_gain: None, own_share: 1.0 }
+        };
+        let times = |pair| {
+            let (single, echoes) = (vec![of("seal-stiction")], vec![echo(60.0)]);
+            Findings { single, pair, echoes, ..Findings::default() }.objection().times
+        };
+        assert!(times(Vec::new()) < 1.0);
+        assert!(times(vec![[of("arm-delay"), of("payload")]]) > 1.5);
     }
 
     #[test]

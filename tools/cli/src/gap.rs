@@ -2,7 +2,10 @@
 
 mod check;
 mod diagnose;
+mod drive;
 mod r#where;
+
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
@@ -19,6 +22,7 @@ pub(crate) struct Gap {
 enum Task {
     Diagnose(diagnose::Diagnose),
     Where(r#where::Where),
+    Drive(drive::Drive),
     Check(check::Check),
 }
 
@@ -27,7 +31,24 @@ impl Gap {
         match &self.task {
             Task::Diagnose(task) => task.execute(),
             Task::Where(task) => task.execute(),
+            Task::Drive(task) => task.execute(),
             Task::Check(task) => task.execute(),
         }
     }
+}
+
+/// What speaks of `logs`, where anything does: `given`, or about.toml beside the first.
+fn about(logs: &[PathBuf], given: Option<&PathBuf>) -> Option<PathBuf> {
+    let beside = logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
+    given.cloned().or_else(|| beside.exists().then_some(beside))
+}
+
+/// Writes `text` into `path`, and says so.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| {
+        let path = path.display();
+        format!("{path}: cannot write: {error}; give a folder that exists and has room")
+    })?;
+    eprintln!("wrote {}", path.display());
+    Ok(())
 }

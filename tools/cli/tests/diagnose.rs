@@ -54,9 +54,8 @@ fn every_manoeuvre_runs_as_a_scenario_and_leaves_the_machine_on_its_wheels() {
     let folder = tempfile::tempdir().unwrap();
     let runs = Manoeuvre::all().into_iter().map(|manoeuvre| {
         let scenario = path(folder.path(), &format!("{}.toml", manoeuvre.name));
-        let script = format!("{}.script.toml", manoeuvre.name);
-        std::fs::write(path(folder.path(), &script), manoeuvre.script()).unwrap();
-        std::fs::write(&scenario, manoeuvre.scenario(&script, "a, b")).unwrap();
+        let written = xt28(&["gap", "drive", manoeuvre.name, "--out", &scenario]);
+        assert_eq!(written.status.code(), Some(0), "{}", manoeuvre.name);
         std::thread::spawn(move || {
             (manoeuvre.name, xt28(&["run", &scenario, "--solver", "reduced"]))
         })
@@ -66,5 +65,16 @@ fn every_manoeuvre_runs_as_a_scenario_and_leaves_the_machine_on_its_wheels() {
         let talk = String::from_utf8_lossy(&output.stderr);
         let table = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(0), "{name}: {talk}{table}");
+    }
+}
+
+#[test]
+fn drives_are_listed_and_one_that_is_none_is_answered_with_those_there_are() {
+    let listed = String::from_utf8(xt28(&["gap", "drive"]).stdout).unwrap();
+    let output = xt28(&["gap", "drive", "wobble"]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    for manoeuvre in Manoeuvre::all() {
+        assert!(listed.contains(manoeuvre.name) && talk.contains(manoeuvre.name), "{listed}{talk}");
     }
 }

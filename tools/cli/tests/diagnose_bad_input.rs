@@ -129,3 +129,22 @@ fn wheels_in_another_order_are_named_and_not_put_in_order() {
     assert!(talk.contains("the stroke of FL follows the target of FR"), "{talk}");
     assert!(talk.contains("the stroke of FR follows the target of FL"), "{talk}");
 }
+
+#[test]
+fn a_log_that_nothing_speaks_of_needs_its_ground_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let [copy, about, flat] =
+        ["short.log", "about.toml", "flat.toml"].map(|name| path(folder.path(), name));
+    fs::copy(log(), &copy).unwrap();
+    fs::write(&about, "case = \"other\"\nrun = []\n").unwrap();
+    fs::write(&flat, "kind = \"flat\"\n").unwrap();
+    for task in [&["where"][..], &["diagnose", "--no-how-far"]] {
+        let of =
+            |more: &[&str]| xt28(&[&["gap"], task, &[copy.as_str(), "--dbc", DBC], more].concat());
+        let untold = String::from_utf8(of(&[]).stderr).unwrap();
+        assert!(untold.contains("about.toml: no [[run]] with file = \"short.log\""), "{untold}");
+        assert!(untold.contains("--terrain"), "{untold}");
+        let told = of(&["--terrain", &flat]);
+        assert_ne!(told.status.code(), Some(2), "{}", String::from_utf8_lossy(&told.stderr));
+    }
+}

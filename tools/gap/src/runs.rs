@@ -61,10 +61,14 @@ impl RunSet {
         let one_ground = known.terrain.map(Terrain::load).transpose()?;
         let read = |path: &PathBuf| {
             let told = match (&about, known.about) {
-                (Some(about), Some(file)) => Some(about.run_of(path).ok_or_else(|| {
-                    let log = file_name(path);
-                    GapError::NoRun { path: file.to_owned(), log }
-                })?),
+                (Some(about), Some(file)) => {
+                    let told = about.run_of(path);
+                    if told.is_none() && one_ground.is_none() {
+                        let log = file_name(path);
+                        return Err(GapError::NoRun { path: file.to_owned(), log });
+                    }
+                    told
+                }
                 _ => None,
             };
             let ground = match (&one_ground, told) {

@@ -100,10 +100,14 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
 }
 
 fn page(verdict: Verdict) -> String {
-    let (inquiry, diagnosis) = (inquiry(), diagnosis(verdict));
-    let details = Details::new(&inquiry, &diagnosis);
+    page_of(&diagnosis(verdict))
+}
+
+fn page_of(diagnosis: &Diagnosis) -> String {
+    let inquiry = inquiry();
+    let details = Details::new(&inquiry, diagnosis);
     let subject = Subject { name: HOSTILE.to_owned(), date: HOSTILE.to_owned() };
-    html(&subject, &inquiry.machine, &diagnosis, &details)
+    html(&subject, &inquiry.machine, diagnosis, &details)
 }
 
 /// Every tag of a page is closed, in order.
@@ -167,7 +171,49 @@ fn words_for_a_terminal_say_what_the_page_says() {
         assert!(words.contains(part), "{part}: {words}");
     }
     let none = text(&diagnosis(Verdict::None));
-    assert!(none.starts_with("Nothing beyond ordinary tolerances (probability 1 %)."), "{none}");
+    let nothing = "Nothing beyond ordinary tolerances in what these logs can show (probability 1 %); \
+                   effects that they cannot: 1.";
+    assert!(none.starts_with(nothing), "{none}");
+    let all = text(&Diagnosis { not_testable: Vec::new(), ..diagnosis(Verdict::None) });
+    assert!(all.starts_with("Nothing beyond ordinary tolerances (probability 1 %)."), "{all}");
     let unknown = text(&diagnosis(Verdict::Unknown));
     assert!(unknown.contains("no effect of the catalogue explains"), "{unknown}");
+}
+
+#[test]
+fn where_nothing_is_likelier_than_not_the_likeliest_are_told() {
+    let mut open = diagnosis(Verdict::Effect);
+    open.causes.iter_mut().for_each(|cause| cause.probability *= 0.4);
+    let headline = headline(&open);
+    for part in ["do not tell what", "arm-delay", "(probability 37 %)", "leakage-drift"] {
+        assert!(headline.contains(part), "{part}: {headline}");
+    }
+    let page = page_of(&open);
+    assert!(page.contains("these drives do not tell which cause it is"));
+}
+
+#[test]
+fn a_shrink_on_fitted_runs_is_not_said_to_be_on_others() {
+    let mut fitted = diagnosis(Verdict::Effect);
+    fitted.together.iter_mut().for_each(|together| together.held_out_runs.clear());
+    let words = text(&fitted);
+    assert!(
+        words.contains("shrinks on the runs that were fitted, as none was held out"),
+        "{words}"
+    );
+    assert!(!words.contains("not fitted") && !words.contains("held out:"), "{words}");
+    let page = page_of(&fitted);
+    assert!(page.contains("on the very drives that the cause was found on"));
+    assert!(!page.contains("drives that were not used"));
+}
+
+#[test]
+fn arms_that_all_part_colour_every_wheel() {
+    let mut all = diagnosis(Verdict::Unknown);
+    all.places.iter_mut().for_each(|place| place.scope = "all".parse().unwrap());
+    all.places[0].gap_over_noise = 200.0;
+    let page = page_of(&all);
+    let darkest = page.matches("#7f0000").count();
+    assert!(darkest >= 7, "six wheels and the legend: {darkest}");
+    assert!(headline(&all).contains("(all wheels)"), "{}", headline(&all));
 }

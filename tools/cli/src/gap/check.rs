@@ -1,6 +1,7 @@
 //! `xt28 gap check`: the diagnosis examined on machines whose faults are known and sealed.
 
 use std::fs;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -25,8 +26,8 @@ pub(crate) struct Check {
     #[arg(long, value_name = "DIR")]
     set: Option<PathBuf>,
     /// How many cases to draw
-    #[arg(long, value_name = "N", default_value_t = 40, conflicts_with = "set")]
-    cases: usize,
+    #[arg(long, value_name = "N", default_value = "40", conflicts_with = "set")]
+    cases: NonZeroUsize,
     /// Seed of the cases drawn, and of the seal's salt
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -52,7 +53,7 @@ impl Check {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         let sources = match &self.set {
             Some(folder) => Source::in_folder(folder)?,
-            None => Source::drawn(self.cases, self.seed),
+            None => Source::drawn(self.cases.get(), self.seed),
         };
         let withheld = match &self.set {
             _ if !self.sweep => Vec::new(),

@@ -1,16 +1,20 @@
 //! `xt28 gap diagnose`: what makes a machine part from its simulator, as far as its logs say.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_gap::diagnosis::{Details, Diagnosis, Inquiry, Progress, Verdict as Answer, next_drive};
+use xt28_gap::diagnosis::{
+    Details, Diagnosis, Inquiry, Manoeuvre, Progress, Verdict as Answer, next_drive,
+};
 use xt28_gap::page::Subject;
 use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
+use super::drive::write_drive;
+use super::{about, write};
 use crate::{Failure, Verdict};
 
 /// Say which unmodelled effect parts a machine from its simulator, with what probability
@@ -107,7 +111,7 @@ impl Diagnose {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let believed =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let about = self.about();
+        let about = about(&self.logs, self.about.as_ref());
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let choice = set.choose(&self.fit, &self.held)?;
@@ -122,26 +126,39 @@ impl Diagnose {
 
     /// Says what to drive next, and writes it.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
-        let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)? else { return Ok(()) };
-        if let Some(path) = &self.next {
-            let script = path.with_extension("script.toml");
-            let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            write(&script, &manoeuvre.script())?;
-            write(path, &manoeuvre.scenario(&name, &next.separates.join(", ")))?;
+        if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)? {
+            let good_for = format!("tells apart {}", next.separates.join(", "));
+            self.next.as_ref().map_or(Ok(()), |path| write_drive(path, &manoeuvre, &good_for))?;
+            diagnosis.next = Some(next);
+            return Ok(());
         }
-        diagnosis.next = Some(next);
+        // Nothing is left to tell apart: then what would test most of what is not tested yet.
+        let untested = |m: &Manoeuvre| {
+            diagnosis.not_testable.iter().filter(|one| one.manoeuvre == m.name).count()
+        };
+        let most = Manoeuvre::all().into_iter().max_by_key(untested).filter(|m| untested(m) > 0);
+        let note = match &most {
+            Some(m) => format!(
+                "There are no causes to tell apart. {} would test {} effects that these logs do not.",
+                m.name,
+                untested(m)
+            ),
+            None => {
+                "There are no causes to tell apart, and no effect is untested: no drive would tell \
+                     more."
+                    .to_owned()
+            }
+        };
+        if let (Some(path), Some(manoeuvre)) = (&self.next, &most) {
+            write_drive(path, manoeuvre, "tests what no log did")?;
+        }
+        diagnosis.notes.push(note);
         Ok(())
-    }
-
-    /// What speaks of the logs, where anything does.
-    fn about(&self) -> Option<PathBuf> {
-        let beside = self.logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
-        self.about.clone().or_else(|| beside.exists().then_some(beside))
     }
 
     /// What the report is about.
     fn subject(&self) -> Result<Subject, Failure> {
-        let Some(path) = self.about() else {
+        let Some(path) = about(&self.logs, self.about.as_ref()) else {
             let name = self.logs[0].file_name().unwrap_or_default();
             return Ok(Subject { name: name.to_string_lossy().into_owned(), date: String::new() });
         };
@@ -155,7 +172,15 @@ impl Diagnose {
         });
         let overlay = self.overlay.as_ref().map(|path| {
             let head = page::headline(diagnosis).replace('\n', " ");
-            Ok((path, format!("# {head}\n\n{}", diagnosis.overlay().to_toml())))
+            let late = diagnosis.stood_by().filter_map(|cause| {
+                let at_s = cause.begins.as_ref()?.at_s;
+                let name = cause.effect.name;
+                Some(format!(
+                    "# {name} begins {at_s:.1} s into the runs; here it is there from the start.\n"
+                ))
+            });
+            let late: String = late.collect();
+            Ok((path, format!("# {head}\n{late}\n{}", diagnosis.overlay().to_toml())))
         });
         let report = self.report.as_ref().map(|path| {
             let details = Details::new(inquiry, diagnosis);
@@ -167,15 +192,6 @@ impl Diagnose {
         }
         Ok(())
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| {
-        let path = path.display();
-        format!("{path}: cannot write: {error}; give a folder that exists and has room")
-    })?;
-    eprintln!("wrote {}", path.display());
-    Ok(())
 }
 
 /// Which runs were fitted on, and who chose so.

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 use xt28_gap::diagnosis::{Evidence, Knob, Signals};
-use xt28_gap::{About, Decoder, FieldLog, Mapping, Terrain};
+use xt28_gap::{Decoder, Known, Mapping, RunSet};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
+use super::about;
 use crate::{Failure, Verdict};
 
 /// Drive each block of the simulator with what was measured, and say which one parts from the log
@@ -33,7 +34,11 @@ pub(crate) struct Where {
     /// Effects that our machine gets (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// What is known of the logs (TOML), foremost their ground; else it is taken as level
+    /// Terrain file (TOML) of all runs, instead of what about.toml says
+    #[arg(long, value_name = "FILE")]
+    terrain: Option<PathBuf>,
+    /// What is known of the logs (TOML), foremost their ground; about.toml beside the first log, if
+    /// there, else the ground is taken as level
     #[arg(long, value_name = "FILE")]
     about: Option<PathBuf>,
     /// Print JSON instead of a table
@@ -52,18 +57,14 @@ impl Where {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let mut runs = Vec::with_capacity(self.logs.len());
-        for path in &self.logs {
-            let log = FieldLog::load(path, &decoder, false)?;
-            for fault in log.faults() {
-                eprintln!("{}: {fault}", path.display());
-            }
-            let ground = match &self.about {
-                Some(about) => About::terrain_of(about, path)?,
-                None => Terrain::Flat,
-            };
-            runs.push(Signals::new(&log, ground)?);
+        let about = about(&self.logs, self.about.as_ref());
+        let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
+        let set = RunSet::load(&self.logs, &decoder, known, false)?;
+        for note in set.notes() {
+            eprintln!("{note}");
         }
+        let runs = set.runs().iter().map(|run| Signals::new(&run.log, run.terrain.clone()));
+        let runs: Vec<Signals> = runs.collect::<Result<_, _>>()?;
         let evidence = Evidence::new(&runs, &machine, effects.effects(), &Knob::tolerances());
         let mut gaps = evidence.gaps();
         gaps.sort_by(|(_, a), (_, b)| b.total_cmp(a));

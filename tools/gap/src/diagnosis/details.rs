@@ -69,7 +69,7 @@ impl Details {
         let overlay = diagnosis.overlay();
         let mut with_causes = inquiry.believed.clone();
         overlay.entries.iter().for_each(|entry| entry.apply(&mut with_causes));
-        let pairs = pairs(inquiry, &with_causes);
+        let pairs = pairs(inquiry, &with_causes, diagnosis.since_s());
         Self {
             runs: inquiry
                 .runs
@@ -94,14 +94,21 @@ impl Details {
     }
 }
 
-fn pairs(inquiry: &Inquiry, with_causes: &Effects) -> Vec<Pair> {
+/// Every generator on every run, before and after; `with_causes` from `since_s` on.
+fn pairs(inquiry: &Inquiry, with_causes: &Effects, since_s: f64) -> Vec<Pair> {
     let runs = 0..inquiry.runs.len();
     let jobs: Vec<(usize, Generator)> =
         runs.flat_map(|run| Generator::all().into_iter().map(move |g| (run, g))).collect();
     let pair = |(run, generator): (usize, Generator)| {
         let signals = &inquiry.runs[run].signals;
         let of = |effects| generator.residuals(signals, &inquiry.machine, effects);
-        Pair { run, generator, before: of(&inquiry.believed), after: of(with_causes) }
+        let (before, mut after) = (of(&inquiry.believed), of(with_causes));
+        for (before, after) in before.iter().zip(&mut after) {
+            let values = before.values.iter().zip(&mut after.values).zip(0_u32..);
+            let early = values.take_while(|(_, k)| f64::from(*k) * STEP_S < since_s);
+            early.for_each(|((before, after), _)| *after = *before);
+        }
+        Pair { run, generator, before, after }
     };
     jobs.into_par_iter().map(pair).collect()
 }

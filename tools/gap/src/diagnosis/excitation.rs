@@ -66,6 +66,7 @@ pub fn not_testable(runs: &[Signals], catalogue: &[&'static Effect]) -> Vec<NotT
 
 #[cfg(test)]
 mod tests {
+    use super::super::next_drive::Manoeuvre;
     use super::*;
 
     #[test]
@@ -74,6 +75,9 @@ mod tests {
             assert!(xt28_sim::effects::find(name).is_some(), "{name}");
             assert!(NEEDS[..i].iter().all(|(other, _)| other != name), "{name}");
             assert!(!needs.is_empty());
+            for need in *needs {
+                assert!(Manoeuvre::find(need.manoeuvre()).is_some(), "{}", need.manoeuvre());
+            }
         }
     }
 }

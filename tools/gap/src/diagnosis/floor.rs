@@ -85,7 +85,7 @@ impl fmt::Display for Signal {
             Self::Stroke => "stroke",
             Self::ArmOpening => "arm opening",
             Self::JointAngle => "joint angle",
-            Self::JointFast => "joint angle, what changes within a second",
+            Self::JointFast => "joint angle, within a second",
             Self::SteerOpening => "steering opening",
             Self::DrivePressure => "pump pressure",
             Self::DriveDifference => "difference of the circuits' pressures",

@@ -79,12 +79,11 @@ impl HowFar {
         Ok(how_far)
     }
 
-    /// Runs that a shrink is judged on.
+    /// Runs that were not fitted, which a shrink is judged on; none where all were.
     #[must_use]
-    pub fn judged_runs(&self) -> Vec<String> {
-        let judged =
-            |(k, course): (usize, &Course)| self.judges(k).then(|| course.signals.name.clone());
-        self.courses.iter().enumerate().filter_map(judged).collect()
+    pub fn held_out_runs(&self) -> Vec<String> {
+        let each = self.courses.iter().zip(&self.fit).filter(|(_, fit)| !**fit);
+        each.map(|(course, _)| course.signals.name.clone()).collect()
     }
 
     /// How far `effects` shrink the gap of what is believed.
@@ -199,9 +198,10 @@ impl HowFar {
 }
 
 /// When the first of `causes` begins in a run, s.
-fn since_s(causes: &[Cause]) -> f64 {
+pub(super) fn since_s<'a>(causes: impl IntoIterator<Item = &'a Cause>) -> f64 {
     let begins = |cause: &Cause| cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
-    causes.iter().map(begins).fold(f64::MAX, f64::min).max(0.0)
+    let first = causes.into_iter().map(begins).reduce(f64::min);
+    first.unwrap_or_default()
 }
 
 /// The overlay that puts `causes` into a simulator, each with the best value of its parameters.

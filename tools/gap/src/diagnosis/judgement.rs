@@ -10,13 +10,16 @@ mod causes;
 mod objection;
 mod places;
 
+use xt28_sim::effects::Effect;
+
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
-use super::verdict::{Diagnosis, Verdict};
+use super::stands::STANDS_ABOVE;
+use super::verdict::{Cause, Diagnosis, Verdict};
 use causes::causes;
 use objection::Objection;
 use places::places;
@@ -85,6 +88,11 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     } else {
         Verdict::Effect
     };
+    let told = |effect: &Effect| {
+        let stands = |cause: &Cause| cause.effect == effect && cause.probability > STANDS_ABOVE;
+        verdict == Verdict::Effect && causes.iter().any(stands)
+    };
+    let untold: Vec<_> = inquiry.catalogue.iter().copied().filter(|e| !told(e)).collect();
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
     Diagnosis {
@@ -95,7 +103,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         probability_unknown: any - known,
         together: None,
         next: None,
-        not_testable: not_testable(&runs, &inquiry.catalogue),
+        not_testable: not_testable(&runs, &untold),
         notes: notes(inquiry, findings, verdict),
         seconds: 0.0,
     }

@@ -2,11 +2,11 @@
 
 use xt28_sim::effects::Overlay;
 
-use super::how_far::overlay;
+use super::how_far::{overlay, since_s};
 use super::verdict::{Cause, Diagnosis, Verdict};
 
 /// A cause at or below this probability is only listed.
-const STANDS_ABOVE: f64 = 0.5;
+pub(super) const STANDS_ABOVE: f64 = 0.5;
 
 impl Diagnosis {
     /// The causes that it stands by, the likeliest first: none unless the verdict is an effect.
@@ -17,7 +17,13 @@ impl Diagnosis {
         self.causes.iter().filter(stands)
     }
 
-    /// Those causes at their best values, for the simulator to load.
+    /// When the first of those causes begins in every run, s.
+    #[must_use]
+    pub fn since_s(&self) -> f64 {
+        since_s(self.stood_by())
+    }
+
+    /// Those causes at their best values, for the simulator to load: it has them from its start on.
     #[must_use]
     pub fn overlay(&self) -> Overlay {
         overlay(self.stood_by())

@@ -60,6 +60,14 @@ pub struct Place {
     pub share: f64,
 }
 
+impl Place {
+    /// Whether its wheels say anything: a joint and the engine have none.
+    #[must_use]
+    pub fn has_wheels(&self) -> bool {
+        self.block == Block::Arms || self.scope != Scope::All
+    }
+}
+
 /// One cause at one scope.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cause {
@@ -82,7 +90,7 @@ pub struct Cause {
     /// When it began, where not before the logs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub begins: Option<Beginning>,
-    /// How far the gap shrinks on runs that were not fitted.
+    /// How far the gap shrinks on runs that were not fitted; on all where all were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shrink: Option<Shrink>,
 }
@@ -124,9 +132,9 @@ impl Estimate {
 /// An effect that set in while one was looking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Beginning {
-    /// Name of the run.
+    /// Which runs it begins in: "every run".
     pub run: String,
-    /// Instant in it, s.
+    /// Instant in them, s.
     pub at_s: f64,
 }
 
@@ -152,7 +160,7 @@ pub struct Together {
     pub shrink: Shrink,
     /// How far a free model of the residuals without physics, fitted on the same runs, shrinks it.
     pub black_box: Shrink,
-    /// Runs that were not fitted.
+    /// Runs that were not fitted, which the shrinks are of; none where all were: then they are of those.
     pub held_out_runs: Vec<String>,
 }
 

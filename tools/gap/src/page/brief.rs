@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use xt28_machine::Machine;
 
-use super::colour::{AFTER, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
+use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
 use super::machine_view;
 use super::svg::{Anchor, Svg, escape};
 use super::words::{headline, percent, shrinks};
@@ -37,20 +37,21 @@ fn sureness(diagnosis: &Diagnosis) -> String {
     let (width, height) = (350.0, 22.0);
     let mut parts: Vec<(String, f64, &str)> = Vec::new();
     let stood: Vec<&str> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
-    // Two causes may each be likely: what the bar shows is that both hold.
-    let first = diagnosis.stood_by().map(|cause| cause.probability).fold(f64::NAN, f64::min);
-    if !stood.is_empty() {
-        parts.push((stood.join(" and "), first, BEFORE));
+    // Two causes may each be likely: the likelier one is there with the other, or alone.
+    let likely = || diagnosis.stood_by().map(|cause| cause.probability);
+    let [first, both] = [likely().fold(0.0, f64::max), likely().fold(f64::INFINITY, f64::min)];
+    if let [one, others @ ..] = &stood[..] {
+        parts.push((stood.join(" and "), both, BEFORE));
+        if !others.is_empty() {
+            parts.push((format!("{one} alone"), first - both, ALONE));
+        }
     }
-    let rest = 1.0
-        - if stood.is_empty() { 0.0 } else { first }
-        - diagnosis.probability_none
-        - diagnosis.probability_unknown;
+    let rest = 1.0 - first - diagnosis.probability_none - diagnosis.probability_unknown;
     parts.push(("other causes".to_owned(), rest.max(0.0), OTHER));
     parts.push(("nothing beyond tolerances".to_owned(), diagnosis.probability_none, NOTHING));
     parts.push(("not in the catalogue".to_owned(), diagnosis.probability_unknown, UNKNOWN));
     let total: f64 = parts.iter().map(|(_, share, _)| share).sum();
-    let mut svg = Svg::new(width, height + 18.0 * 4.0 + 8.0);
+    let mut svg = Svg::new(width, height + 18.0 * 5.0 + 8.0);
     let (mut x, mut y) = (0.0, height + 18.0);
     for (name, share, colour) in &parts {
         let part = width * share / total.max(1e-9);
@@ -89,8 +90,14 @@ fn shrinking(diagnosis: &Diagnosis) -> String {
         );
         svg.text([350.0, y + 14.0], &format!("{} less", shrinks(share)), Anchor::End, 12.0, INK);
     }
+    let drives = match &diagnosis.together {
+        Some(together) if together.held_out_runs.is_empty() => {
+            "the very drives that the cause was found on, as all were used for that"
+        }
+        _ => "drives that were not used to find the cause",
+    };
     format!(
-        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on drives that were not used to find the cause.</p>",
+        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on {drives}.</p>",
         svg.finish("What is left of the gap at three horizons")
     )
 }
@@ -99,6 +106,9 @@ fn next(diagnosis: &Diagnosis) -> String {
     let mut out = String::new();
     let stood: Vec<&str> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
     match diagnosis.verdict {
+        Verdict::Effect if stood.is_empty() => out.push_str(
+            "<p>Drive more: these drives do not tell which cause it is.</p>",
+        ),
         Verdict::Effect => {
             let _ = write!(
                 out,
@@ -106,7 +116,12 @@ fn next(diagnosis: &Diagnosis) -> String {
                 escape(&stood.join(" and "))
             );
         }
-        Verdict::None => out.push_str("<p>Nothing: simulator and machine agree.</p>"),
+        Verdict::None if diagnosis.not_testable.is_empty() => {
+            out.push_str("<p>Nothing: simulator and machine agree.</p>");
+        }
+        Verdict::None => out.push_str(
+            "<p>Nothing as far as these drives go; what they cannot show is on the next page, with the drive that would.</p>",
+        ),
         Verdict::Unknown => out.push_str(
             "<p>Look at the machine where the drawing is darkest: no known effect explains what is there.</p>",
         ),

@@ -4,6 +4,8 @@
 pub(super) const INK: &str = "#333333";
 /// Before, and what is wrong: vermilion (Okabe and Ito).
 pub(super) const BEFORE: &str = "#d55e00";
+/// One of two that are wrong, without the other: orange.
+pub(super) const ALONE: &str = "#e69f00";
 /// After, and what is right: blue.
 pub(super) const AFTER: &str = "#0072b2";
 /// The other causes: sky blue.

@@ -102,7 +102,7 @@ impl Parts {
         let whole = |block: Block| worst(&|p: &&Place| p.block == block && p.scope == Scope::All);
         Self {
             wheels: PerWheel::from_fn(|w| {
-                worst(&|p: &&Place| p.scope != Scope::All && p.scope.contains(w))
+                worst(&|p: &&Place| p.has_wheels() && p.scope.contains(w))
             }),
             joints: whole(Block::Steering),
             drive: whole(Block::Drive),

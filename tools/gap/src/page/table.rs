@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use super::svg::escape;
-use super::words::{elsewhere, on, percent, short, shrinks};
+use super::words::{elsewhere, judged_on, on, percent, short, shrinks};
 use crate::diagnosis::{Cause, Details, Diagnosis, Shrink};
 
 /// Causes listed.
@@ -95,14 +95,18 @@ pub(super) fn together(diagnosis: &Diagnosis) -> String {
             cell(by.run, by.interval[2])
         )
     };
+    let held = match &together.held_out_runs[..] {
+        [] => String::new(),
+        runs => format!(" Held out: {}.", escape(&runs.join(", "))),
+    };
     format!(
-        "<h2>How far the gap shrinks on runs that were not fitted</h2>\
+        "<h2>How far the gap shrinks on {}</h2>\
          <table><thead><tr><th>in the simulator</th><th>one step ahead</th><th>5 s ahead</th><th>whole runs</th></tr></thead><tbody>\
          <tr><td>no effect</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td></tr>{}{}</tbody></table>\
-         <p class=\"small\">1 less the gap after over the gap before; 90 % intervals by bootstrap. Held out: {}.</p>",
+         <p class=\"small\">1 less the gap after over the gap before; 90 % intervals by bootstrap.{held}</p>",
+        judged_on(together),
         row(&together.effects.join(" + "), &together.shrink),
-        row("a free model of the errors, without physics", &together.black_box),
-        escape(&together.held_out_runs.join(", "))
+        row("a free model of the errors, without physics", &together.black_box)
     )
 }
 

@@ -2,7 +2,7 @@
 
 use core::fmt::Write as _;
 
-use super::words::{elsewhere, estimate, headline, percent, short, shrink};
+use super::words::{elsewhere, estimate, headline, judged_on, percent, short, shrink};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -22,12 +22,14 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     places(&mut out, diagnosis);
     causes(&mut out, diagnosis);
     if let Some(together) = &diagnosis.together {
-        let _ = writeln!(out, "\nhow far the gap shrinks on runs that were not fitted");
+        let _ = writeln!(out, "\nhow far the gap shrinks on {}", judged_on(together));
         let _ =
             writeln!(out, "  with {}: {}", together.effects.join(" + "), shrink(&together.shrink));
         let _ =
             writeln!(out, "  with a free model without physics: {}", shrink(&together.black_box));
-        let _ = writeln!(out, "  held out: {}", together.held_out_runs.join(", "));
+        if !together.held_out_runs.is_empty() {
+            let _ = writeln!(out, "  held out: {}", together.held_out_runs.join(", "));
+        }
     }
     if let Some(next) = &diagnosis.next {
         let _ = writeln!(
@@ -39,7 +41,10 @@ pub fn text(diagnosis: &Diagnosis) -> String {
         );
     }
     if !diagnosis.not_testable.is_empty() {
-        let _ = writeln!(out, "\nnot testable with these logs");
+        let _ = writeln!(
+            out,
+            "\nnot testable with these logs, or not at every wheel (`xt28 gap drive` writes each drive)"
+        );
         for one in &diagnosis.not_testable {
             let _ =
                 writeln!(out, "  {:<22} {}; drive {}", one.effect.name, one.lacks, one.manoeuvre);
@@ -61,13 +66,13 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
     }
     let _ = writeln!(
         out,
-        "\n{:<10} {:<7} {:<26} {:>14} {:>7}",
+        "\n{:<10} {:<7} {:<36} {:>14} {:>7}",
         "where", "wheels", "signal", "gap over noise", "share"
     );
     for place in diagnosis.places.iter().take(PLACES) {
         let _ = writeln!(
             out,
-            "{:<10} {:<7} {:<26} {:>14} {:>7}",
+            "{:<10} {:<7} {:<36} {:>14} {:>7}",
             place.block,
             place.scope,
             place.residual,

@@ -3,7 +3,7 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Diagnosis, Estimate, Shrink, Verdict};
+use crate::diagnosis::{Cause, Diagnosis, Estimate, Place, Shrink, Together, Verdict};
 
 /// Share of a cause's probability above which wheels that it may be at are in the headline.
 const SAID_ABOVE: f64 = 0.2;
@@ -14,21 +14,53 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
     match diagnosis.verdict {
         Verdict::Effect => {
             let each: Vec<String> = diagnosis.stood_by().map(cause).collect();
-            format!("{}.", each.join(", and "))
+            if each.is_empty() { undecided(diagnosis) } else { format!("{}.", each.join(", and ")) }
         }
-        Verdict::None => format!(
-            "Nothing beyond ordinary tolerances (probability {}).",
-            percent(diagnosis.probability_none)
-        ),
+        Verdict::None => {
+            let sure = percent(diagnosis.probability_none);
+            match diagnosis.not_testable.len() {
+                0 => format!("Nothing beyond ordinary tolerances (probability {sure})."),
+                untested => format!(
+                    "Nothing beyond ordinary tolerances in what these logs can show (probability {sure}); \
+                     effects that they cannot: {untested}."
+                ),
+            }
+        }
         Verdict::Unknown => {
             let place = diagnosis.places.first().map_or_else(String::new, |place| {
-                format!(", foremost in {} ({})", place.residual, on(place.scope))
+                let wheels = wheels_of(place).map_or(String::new(), |on| format!(" ({on})"));
+                format!(", foremost in {}{wheels}", place.residual)
             });
             format!(
                 "Something is the matter that no effect of the catalogue explains{place} (probability {}).",
                 percent(diagnosis.probability_unknown)
             )
         }
+    }
+}
+
+/// Something is wrong, and nothing is likelier than not.
+fn undecided(diagnosis: &Diagnosis) -> String {
+    let likeliest: Vec<String> = diagnosis.causes.iter().take(2).map(cause).collect();
+    format!(
+        "Something parts from the simulator, and these logs do not tell what: {}, nothing beyond ordinary \
+         tolerances (probability {}).",
+        likeliest.join(", "),
+        percent(diagnosis.probability_none)
+    )
+}
+
+/// The wheels of a place, in words; none where its block has none.
+fn wheels_of(place: &Place) -> Option<String> {
+    place.has_wheels().then(|| on(place.scope))
+}
+
+/// On which runs a shrink was told, after "the gap shrinks on".
+pub(super) const fn judged_on(together: &Together) -> &'static str {
+    if together.held_out_runs.is_empty() {
+        "the runs that were fitted, as none was held out"
+    } else {
+        "runs that were not fitted"
     }
 }
 

@@ -31,10 +31,10 @@ impl HowFar {
                 effects: causes.iter().map(|cause| cause.effect.name).collect(),
                 shrink: refit.shrink,
                 black_box: self.black_box(),
-                held_out_runs: self.judged_runs(),
+                held_out_runs: self.held_out_runs(),
             });
         }
-        progress("foretelling runs that were not fitted", 0.9);
+        progress("foretelling runs", 0.9);
         let alone = diagnosis.together.as_ref().filter(|_| stood_by.len() == 1).map(|t| t.shrink);
         for (k, cause) in diagnosis.causes.iter_mut().enumerate() {
             let stands = stood_by.contains(&k);

@@ -7,6 +7,7 @@ use xt28_sim::effects::Scope;
 
 use crate::diagnosis::evidence::Left;
 use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::Generator;
 use crate::diagnosis::verdict::Place;
 
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
@@ -26,7 +27,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
         let place = Place {
             block: left.generator.block(),
             scope,
-            residual: left.signal.to_string(),
+            residual: residual(left),
             gap_over_noise: of.iter().map(|p| p.left.square.sqrt()).fold(0.0, f64::max),
             share: of.iter().map(|parting| parting.excess).sum::<f64>() / total,
         };
@@ -39,7 +40,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
                 let signal = parting.left.signal.to_string();
                 of_wheels.entry(signal).or_default().push((wheel, parting));
             }
-            None => place(Scope::All, &[parting]),
+            None => place(scope_of(parting.left.signal), &[parting]),
         }
     }
     for wheels in of_wheels.values() {
@@ -71,6 +72,23 @@ impl<'a> Parting<'a> {
         let cost = |square| Left { square, samples, ..*before }.cost();
         let nats = (cost(before.square) - cost(after.square.min(1.0))).max(0.0);
         Self { left: before, excess: (before.square - 1.0).max(0.0), nats }
+    }
+}
+
+/// The signal in words, with its joint where it is one of two.
+fn residual(left: &Left) -> String {
+    match left.generator {
+        Generator::Joint(0) | Generator::SteerEcu(0) => format!("front {}", left.signal),
+        Generator::Joint(_) | Generator::SteerEcu(_) => format!("rear {}", left.signal),
+        _ => left.signal.to_string(),
+    }
+}
+
+/// The wheels of a signal of the whole machine.
+const fn scope_of(signal: Signal) -> Scope {
+    match signal {
+        Signal::Contact(wheel) => Scope::Wheel(wheel),
+        _ => Scope::All,
     }
 }
 

@@ -54,11 +54,18 @@ impl Manoeuvre {
         text
     }
 
-    /// The scenario that plays that script, which lies beside it as the file `script`.
+    /// The one of this name.
     #[must_use]
-    pub fn scenario(&self, script: &str, separates: &str) -> String {
+    pub fn find(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|one| one.name == name)
+    }
+
+    /// The scenario that plays that script, which lies beside it as the file `script`, with a word on
+    /// what it is `good_for`.
+    #[must_use]
+    pub fn scenario(&self, script: &str, good_for: &str) -> String {
         format!(
-            "# What this drive leaves in the log tells apart: {separates}.\ntitle = \"{}, the next test drive\"\npolicy = \"script:{script}\"\nduration_s = {:.1}\n\n# The machine comes through it on its wheels.\n[[expect]]\ncarries-weight = {{ from_s = {:.1}, to_s = {:.1}, within_percent = 5.0 }}\n",
+            "# What this drive leaves in the log {good_for}.\ntitle = \"{}, a test drive\"\npolicy = \"script:{script}\"\nduration_s = {:.1}\n\n# The machine comes through it on its wheels.\n[[expect]]\ncarries-weight = {{ from_s = {:.1}, to_s = {:.1}, within_percent = 5.0 }}\n",
             self.name,
             self.end_s + 2.0,
             self.end_s,

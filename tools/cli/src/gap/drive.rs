@@ -1,0 +1,51 @@
+//! `xt28 gap drive`: the scripted test drives that a diagnosis asks for.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use xt28_gap::diagnosis::Manoeuvre;
+
+use super::write;
+use crate::{Failure, Verdict};
+
+/// Write a scripted test drive for `xt28 run`, by the name that a diagnosis asks for it
+///
+/// Without NAME, says which there are. The scenario runs on the bench as it is; on a machine the gateway
+/// plays the script beside it.
+#[derive(Args)]
+pub(crate) struct Drive {
+    /// Name of the drive
+    name: Option<String>,
+    /// Where to write the scenario (TOML), and its script beside it; NAME.toml when left out
+    #[arg(long, value_name = "OUT", requires = "name")]
+    out: Option<PathBuf>,
+}
+
+impl Drive {
+    pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let names = || Manoeuvre::all().iter().map(|one| one.name).collect::<Vec<_>>().join(" ");
+        let Some(name) = &self.name else {
+            for one in Manoeuvre::all() {
+                println!("{:<12} {:>4.0} s", one.name, one.end_s);
+            }
+            return Ok(Verdict::Positive);
+        };
+        let manoeuvre = Manoeuvre::find(name)
+            .ok_or_else(|| format!("there is no drive '{name}'; there are {}", names()))?;
+        let out = self.out.clone().unwrap_or_else(|| format!("{name}.toml").into());
+        write_drive(&out, &manoeuvre, "shows what a diagnosis missed")?;
+        Ok(Verdict::Positive)
+    }
+}
+
+/// Writes `manoeuvre` into `path`, and its script beside it.
+pub(super) fn write_drive(
+    path: &Path,
+    manoeuvre: &Manoeuvre,
+    good_for: &str,
+) -> Result<(), Failure> {
+    let script = path.with_extension("script.toml");
+    let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    write(&script, &manoeuvre.script())?;
+    write(path, &manoeuvre.scenario(&name, good_for))
+}

@@ -217,3 +217,14 @@ fn arms_that_all_part_colour_every_wheel() {
     assert!(darkest >= 7, "six wheels and the legend: {darkest}");
     assert!(headline(&all).contains("(all wheels)"), "{}", headline(&all));
 }
+
+#[test]
+fn wheels_that_cannot_be_told_apart_are_not_all_listed_in_the_headline() {
+    let mut open = diagnosis(Verdict::Effect);
+    open.causes[0].scopes =
+        ["all", "left", "FR"].map(|scope| (scope.parse().unwrap(), 0.3)).to_vec();
+    open.causes[0].scope = "all".parse().unwrap();
+    let words = "arm-delay at wheels that these logs do not tell apart, all wheels foremost";
+    assert!(headline(&open).starts_with(words), "{}", headline(&open));
+    assert!(text(&open).contains("all wheels (30 %), the left side (30 %), wheel FR (30 %)"));
+}

@@ -37,6 +37,21 @@ pub struct Named {
     pub like: Vec<&'static Effect>,
 }
 
+impl Named {
+    /// An effect named without a probability and not stood by.
+    #[must_use]
+    pub const fn without_probability(effect: &'static Effect, scope: Scope) -> Self {
+        Self {
+            effect,
+            scope,
+            scope_share: None,
+            probability: None,
+            stands: false,
+            like: Vec::new(),
+        }
+    }
+}
+
 impl Reply {
     /// The `place`-th cause, from 0.
     #[must_use]

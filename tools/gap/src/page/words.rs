@@ -5,8 +5,8 @@ use xt28_sim::effects::Scope;
 
 use crate::diagnosis::{Cause, Diagnosis, Estimate, Place, Shrink, Together, Verdict};
 
-/// Share of a cause's probability above which wheels that it may be at are in the headline.
-const SAID_ABOVE: f64 = 0.2;
+/// How likely, beside the likeliest, other wheels have to be to be in the headline.
+const SAID_ABOVE: f64 = 0.25;
 
 /// The verdict in one sentence.
 #[must_use]
@@ -66,13 +66,20 @@ pub(super) const fn judged_on(together: &Together) -> &'static str {
 
 /// An effect with its wheels and probability.
 fn cause(cause: &Cause) -> String {
-    let others = cause.scopes.iter().skip(1).filter(|(_, share)| *share > SAID_ABOVE);
-    let wheels: Vec<String> =
-        std::iter::once(cause.scope).chain(others.map(|(scope, _)| *scope)).map(on).collect();
-    let whose = if cause.effect.has_scope() {
-        format!(" at {}", wheels.join(" or "))
-    } else {
-        String::new()
+    let likely = cause.scopes.first().map_or(1.0, |(_, share)| *share);
+    let others: Vec<String> = cause
+        .scopes
+        .iter()
+        .skip(1)
+        .filter(|(_, share)| *share > SAID_ABOVE * likely)
+        .map(|(scope, _)| on(*scope))
+        .collect();
+    let first = on(cause.scope);
+    let whose = match &others[..] {
+        _ if !cause.effect.has_scope() => String::new(),
+        [] => format!(" at {first}"),
+        [other] => format!(" at {first} or {other}"),
+        _ => format!(" at wheels that these logs do not tell apart, {first} foremost"),
     };
     format!("{}{whose} (probability {})", cause.effect.name, percent(cause.probability))
 }

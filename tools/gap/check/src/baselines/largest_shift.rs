@@ -48,15 +48,5 @@ fn named((effect, shifts): (&'static Effect, PerWheel<f64>)) -> (f64, Named) {
     } else {
         Scope::All
     };
-    (
-        most,
-        Named {
-            effect,
-            scope,
-            scope_share: None,
-            probability: None,
-            stands: false,
-            like: Vec::new(),
-        },
-    )
+    (most, Named::without_probability(effect, scope))
 }

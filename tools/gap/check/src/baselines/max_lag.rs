@@ -68,14 +68,7 @@ fn ranked(inquiry: &Inquiry, mut found: [(&str, (f64, Scope)); 3]) -> Vec<Named>
     found.sort_by(|(_, (a, _)), (_, (b, _))| b.total_cmp(a));
     let named = |(name, (_, scope)): (&str, (f64, Scope))| {
         let effect = find(name).filter(|effect| inquiry.catalogue.contains(effect))?;
-        Some(Named {
-            effect,
-            scope,
-            scope_share: None,
-            probability: None,
-            stands: false,
-            like: Vec::new(),
-        })
+        Some(Named::without_probability(effect, scope))
     };
     found.into_iter().filter_map(named).collect()
 }

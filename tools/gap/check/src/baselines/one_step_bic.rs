@@ -42,14 +42,9 @@ pub(super) fn reply(inquiry: &Inquiry) -> Reply {
     let total = weight(0.0) + scored.iter().map(|(gain, _)| weight(*gain)).sum::<f64>();
     let named = |(gain, h): &(f64, Hypothesis)| {
         let probability = weight(*gain) / total;
-        Named {
-            effect: h.effect,
-            scope: h.scope,
-            scope_share: None,
-            probability: Some(probability),
-            stands: probability > 0.5,
-            like: Vec::new(),
-        }
+        let stands = probability > 0.5;
+        let named = Named::without_probability(h.effect, h.scope);
+        Named { probability: Some(probability), stands, ..named }
     };
     let causes: Vec<Named> = scored.iter().take(10).map(named).collect();
     let none = weight(0.0) / total;

@@ -59,7 +59,7 @@ pub(super) fn steer_opening_asked(
     pi.asked(signals.len, pi.best_sum(driving)).collect()
 }
 
-/// The steering PI (facts 5) on what it had before it.
+/// The steering PI (paper; gains and threshold of the machine file) on what it had before it.
 struct Pi<'a> {
     kp_per_deg: f64,
     ki_per_s: f64,

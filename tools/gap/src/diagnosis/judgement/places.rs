@@ -40,7 +40,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
                 let signal = parting.left.signal.to_string();
                 of_wheels.entry(signal).or_default().push((wheel, parting));
             }
-            None => place(scope_of(parting.left.signal), &[parting]),
+            None => place(Scope::All, &[parting]),
         }
     }
     for wheels in of_wheels.values() {
@@ -75,20 +75,15 @@ impl<'a> Parting<'a> {
     }
 }
 
-/// The signal in words, with its joint where it is one of two.
+/// The signal in words, with its joint or wheel where it is one of some. A wheel that seems to hang in
+/// the air says that the machine does not stand as its strokes have it, not that this wheel is the matter:
+/// its place is the machine.
 fn residual(left: &Left) -> String {
-    match left.generator {
-        Generator::Joint(0) | Generator::SteerEcu(0) => format!("front {}", left.signal),
-        Generator::Joint(_) | Generator::SteerEcu(_) => format!("rear {}", left.signal),
-        _ => left.signal.to_string(),
-    }
-}
-
-/// The wheels of a signal of the whole machine.
-const fn scope_of(signal: Signal) -> Scope {
-    match signal {
-        Signal::Contact(wheel) => Scope::Wheel(wheel),
-        _ => Scope::All,
+    match (left.generator, left.signal) {
+        (Generator::Joint(0) | Generator::SteerEcu(0), signal) => format!("front {signal}"),
+        (Generator::Joint(_) | Generator::SteerEcu(_), signal) => format!("rear {signal}"),
+        (_, signal @ Signal::Contact(wheel)) => format!("{signal}, {wheel}"),
+        (_, signal) => signal.to_string(),
     }
 }
 
@@ -150,6 +145,16 @@ mod tests {
         let square = |wheel| if matches!(wheel, Wheel::Fr | Wheel::Bl) { 81.0 } else { 1.0 };
         let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
         assert_eq!(places(&before, &before).len(), 6);
+    }
+
+    #[test]
+    fn a_wheel_that_seems_to_hang_is_told_by_name_and_placed_on_the_whole_machine() {
+        let of = |generator, signal| Left { generator, signal, ..left(Wheel::Fr, 81.0) };
+        let signal = Signal::Contact(Wheel::Ml);
+        let both = [of(Generator::Stance, signal), of(Generator::Joint(1), Signal::JointAngle)];
+        let [one, other] = &places(&both, &both)[..] else { panic!("two places") };
+        assert_eq!((one.scope, one.residual.as_str()), (Scope::All, "touch of the ground, ML"));
+        assert_eq!(other.residual, "rear joint angle");
     }
 
     #[test]

@@ -44,7 +44,7 @@ pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
 pub use judgement::Findings;
 pub use knob::{Knob, TOLERANCES, Tolerance};
-pub use next_drive::{Manoeuvre, next_drive};
+pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use regime::{Direction, Regime};
 pub use search::search;
 pub(crate) use signals::needed;

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_gap::diagnosis::{
-    Details, Diagnosis, Inquiry, Manoeuvre, Progress, Verdict as Answer, next_drive,
+    Details, Diagnosis, Inquiry, Progress, Verdict as Answer, next_drive, untested_drive,
 };
 use xt28_gap::page::Subject;
 use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
@@ -124,36 +124,28 @@ impl Diagnose {
         Ok((inquiry, notes))
     }
 
-    /// Says what to drive next, and writes it.
+    /// Says what to drive next, and writes it: what tells the causes apart or, where there are none, what
+    /// shows most that these logs do not.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
-        if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)? {
+        let (manoeuvre, good_for) = if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)?
+        {
             let good_for = format!("tells apart {}", next.separates.join(", "));
-            self.next.as_ref().map_or(Ok(()), |path| write_drive(path, &manoeuvre, &good_for))?;
             diagnosis.next = Some(next);
+            (manoeuvre, good_for)
+        } else if let Some((manoeuvre, effects)) = untested_drive(diagnosis) {
+            let name = manoeuvre.name;
+            diagnosis.notes.push(format!(
+                "There are no causes to tell apart. {name} would test {effects} effects that these logs do not."
+            ));
+            (manoeuvre, "tests what no log did".to_owned())
+        } else {
+            let nothing = "There are no causes to tell apart, and no effect is untested: no drive would \
+                           tell more.";
+            diagnosis.notes.push(nothing.to_owned());
             return Ok(());
-        }
-        // Nothing is left to tell apart: then what would test most of what is not tested yet.
-        let untested = |m: &Manoeuvre| {
-            diagnosis.not_testable.iter().filter(|one| one.manoeuvre == m.name).count()
         };
-        let most = Manoeuvre::all().into_iter().max_by_key(untested).filter(|m| untested(m) > 0);
-        let note = match &most {
-            Some(m) => format!(
-                "There are no causes to tell apart. {} would test {} effects that these logs do not.",
-                m.name,
-                untested(m)
-            ),
-            None => {
-                "There are no causes to tell apart, and no effect is untested: no drive would tell \
-                     more."
-                    .to_owned()
-            }
-        };
-        if let (Some(path), Some(manoeuvre)) = (&self.next, &most) {
-            write_drive(path, manoeuvre, "tests what no log did")?;
-        }
-        diagnosis.notes.push(note);
-        Ok(())
+        let Some(path) = &self.next else { return Ok(()) };
+        write_drive(path, &manoeuvre, &good_for)
     }
 
     /// What the report is about.

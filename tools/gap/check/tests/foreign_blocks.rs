@@ -12,6 +12,10 @@ fn signals(case: Case) -> Vec<Signals> {
     runs.into_iter().map(|run| run.signals).collect()
 }
 
+fn hypothesis(effect: &str, scope: effects::Scope) -> Hypothesis {
+    Hypothesis { effect: find(effect).unwrap(), scope }
+}
+
 /// `effect` at `scope` on those wheels' arms, sought from `start` for each instant at which it may set in.
 fn fits(
     runs: &[Signals],
@@ -19,7 +23,7 @@ fn fits(
     start: f64,
     from_s: &[f64],
 ) -> Vec<Fit> {
-    let hypothesis = Hypothesis { effect: find(effect).unwrap(), scope };
+    let hypothesis = hypothesis(effect, scope);
     let arms = Wheel::ALL.into_iter().filter(|wheel| scope.contains(*wheel));
     let watched = arms.map(Generator::ArmStroke).collect();
     let machine = Machine::xt28();
@@ -65,7 +69,7 @@ fn what_an_arm_leaves_open_another_run_may_tell() {
     };
     let [fitted, other] = [&fitted, &other].map(|runs| evidence(runs));
     let scope = effects::Scope::Wheel(Wheel::Fr);
-    let hypothesis = Hypothesis { effect: find("accumulator-gas").unwrap(), scope };
+    let hypothesis = hypothesis("accumulator-gas", scope);
     let alone = hypothesis.refit(&fitted, 0.0, &[1.0, 1.9e6, 1.0e-3, 1.4]);
     let suiting = hypothesis.suiting(&fitted, &other, &alone);
     let foretold = [&alone, &suiting].map(|fit| hypothesis.gain(&other, 0.0, &fit.values));
@@ -80,11 +84,10 @@ fn idle_motors_on_a_slope_hold_what_it_pulls() {
     let run = |manoeuvre| signals(case.only(manoeuvre, 32.0));
     let runs = [run(Manoeuvre::ArmStep), run(Manoeuvre::Multisine)].concat();
     let watched = vec![Generator::Stance];
-    let of = |name, scope| Hypothesis { effect: find(name).unwrap(), scope };
-    let slope = of("terrain-slope", effects::Scope::All);
+    let slope = hypothesis("terrain-slope", effects::Scope::All);
     let sloping = slope.applied(&Effects::default(), &[-0.0274, -0.0113]);
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), sloping, &Knob::all());
-    let drag = of("standstill-drag", effects::Scope::Axle(Axle::Rear));
+    let drag = hypothesis("standstill-drag", effects::Scope::Axle(Axle::Rear));
     let fit = drag.refit(&evidence, 0.0, &[3.0e3]);
     assert!(fit.log_evidence > 10.0, "{fit:?}");
     assert!((2.9e3..4.9e3).contains(&fit.values[0]), "{fit:?}");
@@ -99,7 +102,7 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
     let evidence = Evidence::watching(watched, &runs, &machine, Effects::default(), &Knob::all());
     let scope = effects::Scope::Wheel(Wheel::Fr);
     let echo = |effect| {
-        let hypothesis = Hypothesis { effect: find(effect).unwrap(), scope };
+        let hypothesis = hypothesis(effect, scope);
         let fit = hypothesis.refit(&evidence, 0.0, &[0.18]);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
         evidence.echoes(&effects, &Effects::default())[0]
@@ -113,11 +116,10 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
 fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let case = Case::draw(3_331_623_976, Kind::Pair);
     let runs = signals(case.only(Manoeuvre::ArmStep, 32.0));
-    let of = |name, scope| Hypothesis { effect: find(name).unwrap(), scope };
-    let deadband = of("valve-deadband", effects::Scope::All);
+    let deadband = hypothesis("valve-deadband", effects::Scope::All);
     let nothing = Effects::default();
     let base = Base { effects: deadband.applied(&nothing, &[0.0345]), since_s: 10.3 };
-    let scale = of("stroke-scale", effects::Scope::Wheel(Wheel::Fr));
+    let scale = hypothesis("stroke-scale", effects::Scope::Wheel(Wheel::Fr));
     let both = scale.applied(&base.effects, &[1.0431]);
     let watched = vec![Generator::ArmStroke(Wheel::Fr)];
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), base, &Knob::all());

@@ -81,6 +81,18 @@ impl Candidate {
     }
 }
 
+#[cfg(test)]
+impl Candidate {
+    /// One that explains `score` nats with every parameter a tolerance off, held out nowhere.
+    pub(super) fn made_up(name: &str, scope: xt28_sim::effects::Scope, score: f64) -> Self {
+        let effect = xt28_sim::effects::find(name).unwrap();
+        let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
+        let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
+        let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
+        Self { fit, held_gain: None, own_share: 1.0 }
+    }
+}
+
 impl<'a> Docket<'a> {
     /// The runs in `fit` and `held` around `base`, with the tolerances of `knobs`.
     pub(super) fn new(

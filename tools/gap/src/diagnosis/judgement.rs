@@ -10,16 +10,13 @@ mod causes;
 mod objection;
 mod places;
 
-use xt28_sim::effects::Effect;
-
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
-use super::stands::STANDS_ABOVE;
-use super::verdict::{Cause, Diagnosis, Verdict};
+use super::verdict::{Diagnosis, Verdict};
 use causes::causes;
 use objection::Objection;
 use places::places;
@@ -88,14 +85,9 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     } else {
         Verdict::Effect
     };
-    let told = |effect: &Effect| {
-        let stands = |cause: &Cause| cause.effect == effect && cause.probability > STANDS_ABOVE;
-        verdict == Verdict::Effect && causes.iter().any(stands)
-    };
-    let untold: Vec<_> = inquiry.catalogue.iter().copied().filter(|e| !told(e)).collect();
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
-    Diagnosis {
+    let mut diagnosis = Diagnosis {
         verdict,
         places: places(apart, &findings.after),
         causes,
@@ -103,10 +95,14 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         probability_unknown: any - known,
         together: None,
         next: None,
-        not_testable: not_testable(&runs, &untold),
+        not_testable: not_testable(&runs, &inquiry.catalogue),
         notes: notes(inquiry, findings, verdict),
         seconds: 0.0,
-    }
+    };
+    // What is stood by has been tested.
+    let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();
+    diagnosis.not_testable.retain(|one| !stood.contains(&one.effect));
+    diagnosis
 }
 
 fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
@@ -141,20 +137,14 @@ fn turned(value: f64, [half, sharp]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use xt28_machine::{Machine, Wheel};
-    use xt28_sim::effects::{Block, Scope, find};
+    use xt28_sim::effects::{Block, Scope};
 
     use super::super::floor::Signal;
     use super::super::generator::Generator;
-    use super::super::hypothesis::Hypothesis;
     use super::*;
 
     fn candidate(name: &str, score: f64) -> Candidate {
-        let effect = find(name).unwrap();
-        let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
-        let sigma = vec![0.0; values.len()];
-        let hypothesis = Hypothesis { effect, scope: Scope::All };
-        let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Candidate { fit, held_gain: None, own_share: 1.0 }
+        Candidate::made_up(name, Scope::All, score)
     }
 
     fn left(square: f64) -> Vec<Left> {

@@ -53,6 +53,18 @@ pub fn next_drive(
     }))
 }
 
+/// The manoeuvre that would show most of what the logs could not, and how many effects; `None` where
+/// they could show all.
+#[must_use]
+pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Manoeuvre, usize)> {
+    let shows = |m: Manoeuvre| {
+        let effects = diagnosis.not_testable.iter().filter(|one| one.manoeuvre == m.name).count();
+        (m, effects)
+    };
+    let most = Manoeuvre::all().into_iter().map(shows).max_by_key(|(_, effects)| *effects);
+    most.filter(|(_, effects)| *effects > 0)
+}
+
 /// The least certain of the causes stood by, or the likeliest of all, and what may be in its place;
 /// the other causes stood by are believed.
 fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {

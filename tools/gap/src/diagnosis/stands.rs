@@ -6,7 +6,7 @@ use super::how_far::{overlay, since_s};
 use super::verdict::{Cause, Diagnosis, Verdict};
 
 /// A cause at or below this probability is only listed.
-pub(super) const STANDS_ABOVE: f64 = 0.5;
+const STANDS_ABOVE: f64 = 0.5;
 
 impl Diagnosis {
     /// The causes that it stands by, the likeliest first: none unless the verdict is an effect.

@@ -51,7 +51,8 @@ fn sureness(diagnosis: &Diagnosis) -> String {
     parts.push(("nothing beyond tolerances".to_owned(), diagnosis.probability_none, NOTHING));
     parts.push(("not in the catalogue".to_owned(), diagnosis.probability_unknown, UNKNOWN));
     let total: f64 = parts.iter().map(|(_, share, _)| share).sum();
-    let mut svg = Svg::new(width, height + 18.0 * 5.0 + 8.0);
+    let rows: f64 = parts.iter().map(|_| 18.0).sum();
+    let mut svg = Svg::new(width, height + rows + 8.0);
     let (mut x, mut y) = (0.0, height + 18.0);
     for (name, share, colour) in &parts {
         let part = width * share / total.max(1e-9);

@@ -102,26 +102,15 @@ fn estimates(candidate: &Candidate) -> Vec<Estimate> {
 #[cfg(test)]
 mod tests {
     use xt28_machine::{Axle, Side};
-    use xt28_sim::effects::find;
 
     use super::*;
-    use crate::diagnosis::hypothesis::{Fit, Hypothesis};
-
-    fn candidate(name: &str, scope: Scope, score: f64) -> Candidate {
-        let effect = find(name).unwrap();
-        let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
-        let sigma = vec![0.0; values.len()];
-        let hypothesis = Hypothesis { effect, scope };
-        let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Candidate { fit, held_gain: None, own_share: 1.0 }
-    }
 
     #[test]
     fn wheels_that_the_logs_cannot_part_share_the_probability() {
         let all = [
-            candidate("rolling-resistance", Scope::All, 100.0),
-            candidate("rolling-resistance", Scope::Side(Side::Left), 99.0),
-            candidate("rolling-resistance", Scope::Axle(Axle::Rear), 40.0),
+            Candidate::made_up("rolling-resistance", Scope::All, 100.0),
+            Candidate::made_up("rolling-resistance", Scope::Side(Side::Left), 99.0),
+            Candidate::made_up("rolling-resistance", Scope::Axle(Axle::Rear), 40.0),
         ];
         let [cause] = &shares(&all.each_ref(), 1.0)[..] else { panic!("one effect, one cause") };
         assert!((cause.probability - 1.0).abs() < 1e-12);
@@ -135,7 +124,7 @@ mod tests {
     fn a_second_cause_has_to_foretell_what_it_explains() {
         let second = |held| Candidate {
             held_gain: Some(held),
-            ..candidate("pressure-bias", Scope::All, 35.0)
+            ..Candidate::made_up("pressure-bias", Scope::All, 35.0)
         };
         assert!(is_second(&second(2.0), 110.0) < 0.4);
         assert!(is_second(&second(12.0), 110.0) > 0.9);

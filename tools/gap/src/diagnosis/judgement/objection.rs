@@ -93,7 +93,6 @@ mod tests {
 
     use super::super::super::floor::Signal;
     use super::super::super::generator::Generator;
-    use super::super::super::hypothesis::{Fit, Hypothesis};
     use super::super::super::knob::Knob;
     use super::*;
 
@@ -118,14 +117,7 @@ mod tests {
 
     #[test]
     fn a_vague_cause_that_is_no_longer_believed_excuses_nothing() {
-        let of = |name: &str| {
-            let effect = xt28_sim::effects::find(name).unwrap();
-            let values = effect.parameters.iter().map(|p| p.neutral).collect::<Vec<_>>();
-            let hypothesis = Hypothesis { effect, scope: Scope::All };
-            let sigma = vec![0.0; values.len()];
-            let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: 90.0 };
-            Candidate { fit, held_gain: None, own_share: 1.0 }
-        };
+        let of = |name: &str| Candidate::made_up(name, Scope::All, 90.0);
         let times = |pair| {
             let (single, echoes) = (vec![of("seal-stiction")], vec![echo(60.0)]);
             Findings { single, pair, echoes, ..Findings::default() }.objection().times

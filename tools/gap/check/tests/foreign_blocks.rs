@@ -1,6 +1,6 @@
 //! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
-use xt28_gap::diagnosis::{Base, Evidence, Fit, Generator, Hypothesis, Knob, Signals};
+use xt28_gap::diagnosis::{Base, Evidence, Fit, Generator, Hypothesis, Knob, Signal, Signals};
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
 use xt28_machine::{Axle, Machine, Side, Wheel};
@@ -125,4 +125,17 @@ fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), base, &Knob::all());
     let echo = evidence.echoes(&both, &nothing)[0];
     assert!(echo.explained > 1.0e4 && echo.nats < 10.0, "{echo:?}");
+}
+
+#[test]
+fn an_antenna_that_leans_while_arms_lift_is_no_slip() {
+    let runs = signals(Case::draw(42, Kind::Null).only(Manoeuvre::Mixed, 32.0));
+    let residuals = Generator::Travel.residuals(&runs[0], &Machine::xt28(), &Effects::default());
+    for (signal, floors) in [(Signal::TravelSpeed, 1.1), (Signal::TravelCourse, 0.6)] {
+        let of = residuals.iter().find(|residual| residual.signal == signal).unwrap();
+        let told: Vec<f64> = of.values.iter().copied().filter(|value| value.is_finite()).collect();
+        assert!(told.len() > 100, "{signal}: {}", told.len());
+        let mean_square = told.iter().map(|value| value * value).sum::<f64>() / told.len() as f64;
+        assert!(mean_square.sqrt() < floors, "{signal}: {}", mean_square.sqrt());
+    }
 }

@@ -86,6 +86,7 @@ pub struct Signals {
     pub headings: Vec<[f64; 3]>,
     /// Made of the above when first asked for.
     instants: OnceLock<Vec<Instant>>,
+    antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
 }
 
 impl Signals {
@@ -172,6 +173,7 @@ impl Signals {
             fixes: receiver::fixes(series),
             headings: receiver::headings(series),
             instants: OnceLock::new(),
+            antenna_leans_m: OnceLock::new(),
         })
     }
 
@@ -179,6 +181,11 @@ impl Signals {
     /// joints are, how large its wheels are and which pump drives which; no knob turns those.
     pub(super) fn instants(&self, first: impl FnOnce() -> Vec<Instant>) -> &[Instant] {
         self.instants.get_or_init(first)
+    }
+
+    /// Where the antenna is for the machine's leaning. A machine file says that, and no knob.
+    pub(super) fn antenna_leans_m(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
+        self.antenna_leans_m.get_or_init(first)
     }
 
     /// Length of the run, s.

@@ -5,6 +5,7 @@ mod carried;
 mod holds;
 mod instants;
 mod layout;
+mod lean;
 mod motion;
 mod plane;
 
@@ -16,6 +17,7 @@ use crate::diagnosis::signals::{Samples, Signals};
 use carried::Carrier;
 use holds::Holds;
 use layout::{Layout, Reach};
+pub(super) use lean::antenna_leans_m;
 use plane::{Foot, Plane};
 
 /// Standing errors over a run, ten a second; `NaN` where nothing can be said. Attitude and weight are

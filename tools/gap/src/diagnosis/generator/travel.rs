@@ -4,6 +4,7 @@ use xt28_machine::{Machine, PerWheel};
 use xt28_sim::Effects;
 
 use super::rolling::rolling_errors;
+use super::stance::antenna_leans_m;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Errors of rolling over a run; `NaN` where nothing can be said.
@@ -44,12 +45,15 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     let mut course = vec![f64::NAN; s.len];
     let flat = matches!(s.terrain, xt28_sim::Terrain::Flat);
     let lever = effects.sensors.gnss_lever_arm;
+    let leans_m = s.antenna_leans_m(|| antenna_leans_m(s, machine));
+    let lean_m = |at_s: f64| leans_m[(((at_s - late_s) / DT_S).max(0.0) as usize).min(s.len - 1)];
     let back = (WINDOW_S * 8.0) as usize;
     for k in back..s.fixes.len() {
         let ([t0, x0, y0], [t1, x1, y1]) = (s.fixes[k - back], s.fixes[k]);
         let (dx, dy) = (x1 - x0, y1 - y0);
         // Over fixes that are missing a heading in the middle says too little.
         let near = t1 - t0 < 1.5 * WINDOW_S;
+        let leaning_m = [0, 1].map(|axis| lean_m(t1)[axis] - lean_m(t0)[axis]);
         let heading = s.heading_at(0.5 * (t0 + t1)).filter(|_| near);
         let wheel_m_s = (rolled_at(t1) - rolled_at(t0)) / (t1 - t0);
         let (from, to) = ((t1 / DT_S) as usize, ((t1 + 0.125) / DT_S) as usize);
@@ -57,12 +61,14 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         if let Some([heading, yaw_rate]) = heading {
             let (sin, cos) = heading.sin_cos();
             if wheel_m_s.abs() > ROLLING_M_S && flat {
-                along = wheel_m_s - yaw_rate * lever.y_m - (cos * dx + sin * dy) / (t1 - t0);
+                let moved_m = cos * dx + sin * dy - leaning_m[0];
+                along = wheel_m_s - yaw_rate * lever.y_m - moved_m / (t1 - t0);
             }
             if wheel_m_s > COURSE_M_S && flat {
                 let antenna = machine.sensors.gnss_antenna_m;
                 let side = yaw_rate * (antenna[0] + lever.x_m);
-                angle = side / wheel_m_s - (cos * dy - sin * dx) / (t1 - t0) / wheel_m_s;
+                let moved_m = cos * dy - sin * dx - leaning_m[1];
+                angle = side / wheel_m_s - moved_m / (t1 - t0) / wheel_m_s;
             }
         }
         for i in from..to.min(s.len) {

@@ -106,6 +106,16 @@ fn reaches_harder_targets() {
 }
 
 #[test]
+fn a_goal_of_another_site_is_refused_without_moving() {
+    for away_m in [301.0, 1e5, 1e300] {
+        let drive = drive(pose(away_m, 0.0, 0.0), IDEAL, Attitude::default());
+        let Outcome::Failed(why) = drive.outcome else { panic!("{:?}", drive.outcome) };
+        assert!(why.contains("300 m at most") && why.contains("--origin"), "{why}");
+        assert_eq!(drive.top_speed_m_s, 0.0);
+    }
+}
+
+#[test]
 fn a_goal_beside_the_machine_is_refused_without_moving() {
     let drive = drive(pose(0.0, 3.0, 0.0), IDEAL, Attitude::default());
     let Outcome::Failed(why) = drive.outcome else { panic!("{:?}", drive.outcome) };

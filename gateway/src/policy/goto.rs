@@ -40,6 +40,8 @@ const LATERAL_GAIN_PER_M2: f64 = 0.12;
 const HEADING_GAIN_PER_M: f64 = 0.7;
 /// Share of the tightest curve that planning may use; the rest is left to feedback.
 const PLANNABLE: f64 = 0.9;
+/// The furthest goal of one drive, m (assumed): further away is another site's, or another origin's.
+const GOAL_MAX_M: f64 = 300.0;
 /// Slower than this is standing, m/s.
 const STANDING_M_S: f64 = 0.03;
 /// Standing this long ends a drive, s.
@@ -144,6 +146,13 @@ impl Goto {
         let tightest = PLANNABLE * self.steering.curvature_max_per_m();
         if self.judge(from) == Outcome::Reached {
             return Stage::Ended(Outcome::Reached);
+        }
+        let away_m = (self.goal.east_m - from.east_m).hypot(self.goal.north_m - from.north_m);
+        if away_m > GOAL_MAX_M {
+            return Stage::Ended(Outcome::Failed(format!(
+                "the goal is {away_m:.0} m from the machine, and one drive goes {GOAL_MAX_M} m at most; \
+                 is the origin that its coordinates count from (--origin) where the machine is?"
+            )));
         }
         match Path::plan(from, &self.goal, tightest) {
             Some(path) => Stage::Driving { path, along_m: 0.0 },

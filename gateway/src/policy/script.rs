@@ -8,7 +8,7 @@
 //! stroke_mm = [250, 250, "hold", "hold", 250, 250]   # FR FL MR ML BR BL, 0 to 250
 //! [[command]]
 //! at_s = 5.0
-//! ramp_s = 2.0                      # linearly from the values in force
+//! ramp_s = 2.0                      # linearly from the values in force, or from where an arm is held
 //! throttle_percent = 40             # -100 to 100
 //! front_angle_deg = 10              # -25 to 25, left > 0
 //! [[command]]
@@ -38,10 +38,12 @@ pub struct Script {
     now_s: f64,
 }
 
-/// Where the machine stood at arming: what first ramps start from.
+/// What ramps start from where nothing is commanded.
 #[derive(Clone, Copy, Debug)]
 struct Start {
+    /// Stroke of each arm when the script last did not say where it shall be.
     stroke_m: [f64; 6],
+    /// Front joint at arming.
     front_angle_rad: f64,
 }
 
@@ -87,12 +89,19 @@ impl Script {
             throttle.go(entry, entry.throttle_percent);
             angle_deg.go(entry, entry.front_angle_deg);
             for (i, stroke) in entry.stroke_mm.iter().flatten().enumerate() {
+                // An arm that is held, or that another mode moves, is not where it was told to be last.
+                if holds[i] || mode != Mode::Position {
+                    strokes_mm[i] = Channel::resting(start.stroke_m[i] * 1e3);
+                }
                 holds[i] = matches!(stroke, Stroke::Hold(_));
                 if let Stroke::Target(mm) = stroke {
                     strokes_mm[i].go(entry, Some(*mm));
                 }
             }
             for (i, opening) in entry.opening_percent.iter().flatten().enumerate() {
+                if mode != Mode::Valve {
+                    openings[i] = Channel::resting(0.0);
+                }
                 openings[i].go(entry, Some(*opening));
             }
             let implied = match (&entry.stroke_mm, &entry.opening_percent) {
@@ -135,7 +144,15 @@ impl Policy for Script {
         };
         self.now_s = t_s;
         let start = *self.start.get_or_insert(here);
-        self.at(t_s, &start)
+        let command = self.at(t_s, &start);
+        let told =
+            |i: usize| matches!(command.arms, Arms::Position(strokes) if strokes[i].is_some());
+        if let Some(start) = &mut self.start {
+            for i in (0..6).filter(|i| !told(*i)) {
+                start.stroke_m[i] = here.stroke_m[i];
+            }
+        }
+        command
     }
 
     fn outcome(&self) -> Outcome {
@@ -174,7 +191,10 @@ impl Channel {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::{PerWheel, SimTime};
+
     use super::*;
+    use crate::{Action, Attitude};
 
     const TEXT: &str = r#"
 [[command]]
@@ -211,6 +231,47 @@ opening_percent = [10, -10, 0, 0, 30, -30]
         assert_eq!(at(4.0).throttle, 0.0);
         assert!((at(4.0).front_angle_rad + 10_f64.to_radians()).abs() < 1e-12);
         assert!((at(9.0).front_angle_rad + 20_f64.to_radians()).abs() < 1e-12);
+    }
+
+    /// Where FR is told to be at each time while the machine has it where `seen_m` says.
+    fn told_m(text: &str, seen: [(f64, f64); 3]) -> [Option<f64>; 3] {
+        let mut script = Script::parse(text, Path::new("t.toml")).unwrap();
+        seen.map(|(t_s, stroke_m)| {
+            let zero = PerWheel::splat(0.0);
+            let seen = Observation {
+                at: SimTime::ZERO,
+                since_arming_s: Some(t_s),
+                located: None,
+                attitude: Attitude::default(),
+                stroke_m: PerWheel::splat(stroke_m),
+                load_n: zero,
+                wheel_speed_rad_s: zero,
+                wheel_speed_m_s: 0.0,
+                front_joint_rad: 0.0,
+                rear_joint_rad: 0.0,
+                previous_action: Action::default(),
+            };
+            let Arms::Position(strokes) = script.act(&seen).arms else { return None };
+            strokes[0]
+        })
+    }
+
+    #[test]
+    fn a_ramp_after_a_hold_starts_where_the_arm_is_held() {
+        let strokes = |at_s: f64, fr: &str, ramp_s: f64| {
+            let rest = "\"hold\", \"hold\", \"hold\", \"hold\", \"hold\"";
+            format!("[[command]]\nat_s = {at_s}\nramp_s = {ramp_s}\nstroke_mm = [{fr}, {rest}]\n")
+        };
+        let start = strokes(0.0, "250", 0.0);
+        let held = strokes(0.5, "\"hold\"", 0.0);
+        let opened = "[[command]]\nat_s = 0.5\nopening_percent = [-10, 0, 0, 0, 0, 0]\n";
+        let down = strokes(4.0, "100", 10.0);
+        for between in [held.as_str(), opened] {
+            let seen = [(0.0, 0.17), (3.99, 0.19), (9.0, 0.15)];
+            let told = told_m(&format!("{start}{between}{down}"), seen);
+            assert_eq!([told[0], told[1]], [Some(0.25), None], "{between}");
+            assert!((told[2].unwrap() - 0.145).abs() < 1e-9, "{between}: {told:?}");
+        }
     }
 
     #[test]

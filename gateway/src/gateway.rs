@@ -100,7 +100,7 @@ impl Gateway {
         }
     }
 
-    /// Whether the bus can carry frames. A fault purges what was asked for and needs a new order.
+    /// Whether the bus can carry frames. A fault stops the kernel, which then needs a new order.
     pub const fn on_bus(&mut self, ok: bool) {
         self.bus_ok = ok;
         if !ok {
@@ -208,7 +208,7 @@ impl Gateway {
             Pace::Fix => located.map(|located| located.at),
             Pace::Tick => self.sensors.oldest_at(),
         };
-        let Some(observed_at) = observed_at.filter(|_| self.sensors.complete()) else { return };
+        let Some(observed_at) = observed_at.filter(|_| self.sensors.complete(now)) else { return };
         let seen = self.observe(now);
         self.request = Some(self.policy.act(&seen));
         self.stamps.observation_ns = Some(observed_at.as_nanos());

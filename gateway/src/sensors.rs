@@ -1,5 +1,7 @@
 //! What the gateway hears from the machine's sensors, in SI.
 
+use core::time::Duration;
+
 use xt28_dbc::Frame;
 use xt28_dbc::e2e::{Alive, AliveCheck};
 use xt28_dbc::messages::{
@@ -14,6 +16,8 @@ use crate::running::Running;
 
 const M_PER_MM: f64 = 1e-3;
 const N_PER_DAN: f64 = 10.0;
+/// Loads older than this are lost: four of their periods (assumed).
+const LOADS_GOOD_FOR: Duration = Duration::from_millis(200);
 const RAD_S_PER_RPM: f64 = core::f64::consts::TAU / 60.0;
 
 /// Running lists of everything the policy sees, one per frame.
@@ -149,10 +153,12 @@ impl Sensors {
         at.into_iter().min().flatten()
     }
 
-    /// True once a whole observation can be made; the loads come at 20 Hz and are last.
-    pub(crate) fn complete(&self) -> bool {
+    /// True while a whole observation can be made: each sensor has spoken, and the loads, which no
+    /// deadline of the safety kernel watches, not long ago. They come at 20 Hz and are last.
+    pub(crate) fn complete(&self, now: SimTime) -> bool {
         let loads = [self.load_front_n.at(), self.load_rest_n.at()];
-        self.oldest_at().is_some() && loads.iter().all(Option::is_some)
+        let fresh = |at: Option<SimTime>| at.is_some_and(|at| now.since(at) <= LOADS_GOOD_FOR);
+        self.oldest_at().is_some() && loads.into_iter().all(fresh)
     }
 
     /// Frames that were not what their identifier says.

@@ -108,6 +108,8 @@ fn every_failure_stops_the_machine_then_falls_silent() {
         (Faults { drive_ecu_safe_stop: true, ..fine }, 0.02),
         (Faults { gnss_silent: true, ..fine }, 0.52),
         (Faults { imu_roll_deg: Some(18.5), ..fine }, 0.02),
+        // 0.2 s until loads count as lost, three fixes without an observation, and 25 ms on the way.
+        (Faults { loads_silent: true, ..fine }, 0.7),
     ];
     for (failure, within_s) in failures {
         let mut bench = armed(goto(25.0, 0.0, 0.0));

@@ -32,6 +32,8 @@ pub(crate) struct Faults {
     pub(crate) imu_roll_deg: Option<f64>,
     /// The status frame is sent again and again with the same counter.
     pub(crate) drive_status_stuck: bool,
+    /// The cylinder loads stay away.
+    pub(crate) loads_silent: bool,
 }
 
 pub(crate) struct Bench {
@@ -174,6 +176,9 @@ impl Bench {
                 .encode()
                 .unwrap(),
         ];
+        if self.faults.loads_silent {
+            frames.retain(|frame| ![CylLoadFront::ID, CylLoadMidRear::ID].contains(&frame.id()));
+        }
         self.add_status(&mut frames);
         frames
     }

@@ -10,6 +10,9 @@ use crate::pins::ImuReading;
 /// Share of the turned angle that a tick keeps: 2 s for roll, 1 s for pitch.
 const ROLL_KEEP: f64 = 0.995;
 const PITCH_KEEP: f64 = 0.99;
+/// As far as the attitude's frame goes, thousandths of a degree: a machine that tumbles, or a unit that
+/// says so, ends there.
+const ANGLE_MAX_MDEG: f64 = 327_670.0;
 /// Without one of the two frames for this long the unit is lost (facts 3.9).
 const LOST_AFTER: Duration = Duration::from_millis(50);
 
@@ -56,7 +59,8 @@ impl AttitudeFilter {
         }
         let [pitch_step, roll_step] = self.rate_deg_s.map(|rate| rate * 1e3 * PERIOD_S);
         let mix = |angle: f64, step: f64, lean: f64, keep: f64| {
-            (keep * (angle + step) + (1.0 - keep) * lean).trunc()
+            let mixed = (keep * (angle + step) + (1.0 - keep) * lean).trunc();
+            mixed.clamp(-ANGLE_MAX_MDEG, ANGLE_MAX_MDEG)
         };
         self.roll_mdeg = mix(self.roll_mdeg, roll_step, roll_mdeg, ROLL_KEEP);
         self.pitch_mdeg = mix(self.pitch_mdeg, pitch_step, pitch_mdeg, PITCH_KEEP);
@@ -132,6 +136,16 @@ mod tests {
         filter.on_reading(SimTime::ZERO, rate);
         filter.step();
         assert_eq!(filter.angles_deg(), [-0.099, 0.099]);
+    }
+
+    #[test]
+    fn a_tumble_ends_where_the_frame_does() {
+        let mut filter = AttitudeFilter::default();
+        still(&mut filter, [0.0, 0.0, 1000.0]);
+        let rate = ImuReading::Rate { pitch_deg_s: -655.0, roll_deg_s: 655.0 };
+        filter.on_reading(SimTime::ZERO, rate);
+        (0..1000).for_each(|_| filter.step());
+        assert_eq!(filter.angles_deg(), [-327.67, 327.67]);
     }
 
     #[test]

@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     let mut lateness = Lateness::default();
     while !stop.load(Ordering::Relaxed) && last.is_none_or(|last| now.since(SimTime::ZERO) < last) {
         let due = start + now.since(SimTime::ZERO);
-        listen_until(&mut bus, &mut emulator, due, start)?;
+        listen_until(&mut bus, &mut emulator, (due, now), start)?;
         lateness.add(due.elapsed());
         out.clear();
         if let Some((file, path)) = &mut truth {
@@ -118,17 +118,20 @@ fn open_truth(path: &Path) -> Result<(BufWriter<File>, PathBuf), Problem> {
     Ok((file, path.to_owned()))
 }
 
-/// Takes frames off the bus until `due`; sleeps in between.
+/// Takes frames off the bus until `due`, the tick of `now`; sleeps in between.
+///
+/// An emulator that is behind hears no frame later than its own time: one that came while it was halted
+/// must not count as fresh until it has caught up.
 fn listen_until(
     bus: &mut SocketCan,
     emulator: &mut Emulator,
-    due: Instant,
+    (due, now): (Instant, SimTime),
     start: Instant,
 ) -> Result<(), Problem> {
     loop {
         while let Some(received) = bus.receive()? {
             let since = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
-            emulator.on_frame(SimTime::from_nanos(since), &received.frame);
+            emulator.on_frame(SimTime::from_nanos(since).min(now), &received.frame);
         }
         let left = due.saturating_duration_since(Instant::now());
         if left.is_zero() {

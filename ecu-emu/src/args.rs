@@ -111,7 +111,7 @@ fn stroke_mm(text: &str) -> Result<f64, String> {
 
 fn duration_s(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(s) if s > 0.0 && s.is_finite() => Ok(s),
-        _ => Err("a duration is a number of seconds above zero".to_owned()),
+        Ok(s) if s > 0.0 && s <= 1e7 => Ok(s),
+        _ => Err("a duration is a number of seconds above zero, at most 1e7".to_owned()),
     }
 }

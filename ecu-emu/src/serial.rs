@@ -33,10 +33,8 @@ impl Serial {
         tcsetattr(&terminal, OptionalActions::Now, &modes)?;
         rustix::io::ioctl_fionbio(&port, true)?;
         if let Some(link) = link {
-            match std::fs::remove_file(link) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-                _ => std::os::unix::fs::symlink(&path, link)?,
-            }
+            make_way(link)?;
+            std::os::unix::fs::symlink(&path, link)?;
         }
         Ok(Self { port, _terminal: terminal, path, link: link.map(Path::to_owned) })
     }
@@ -57,8 +55,46 @@ impl Serial {
 
 impl Drop for Serial {
     fn drop(&mut self) {
-        if let Some(link) = &self.link {
+        // Another emulator may have put its own link there meanwhile.
+        if let Some(link) = &self.link
+            && std::fs::read_link(link).is_ok_and(|target| target == self.path)
+        {
             let _ = std::fs::remove_file(link);
         }
+    }
+}
+
+/// Takes away a link that an earlier run left; anything else that is there stays.
+fn make_way(link: &Path) -> io::Result<()> {
+    match std::fs::symlink_metadata(link) {
+        Ok(there) if there.is_symlink() => std::fs::remove_file(link),
+        Ok(_) => Err(io::Error::new(
+            io::ErrorKind::AlreadyExists,
+            format!("{} is there and no link; give --gnss-link another path", link.display()),
+        )),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_replaces_a_link_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("gnss");
+        std::fs::write(&link, "a file of mine").unwrap();
+        let refused = Serial::open(Some(&link)).unwrap_err().to_string();
+        assert!(refused.contains("is there and no link"), "{refused}");
+        assert_eq!(std::fs::read_to_string(&link).unwrap(), "a file of mine");
+        std::fs::remove_file(&link).unwrap();
+        let first = Serial::open(Some(&link)).unwrap();
+        let second = Serial::open(Some(&link)).unwrap();
+        drop(first);
+        assert_eq!(std::fs::read_link(&link).unwrap(), second.path());
+        drop(second);
+        assert!(std::fs::symlink_metadata(&link).is_err());
     }
 }

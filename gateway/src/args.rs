@@ -8,10 +8,12 @@ use gateway::Geodetic;
 /// Drive an Xt28 over CAN: a policy's actions become frames, under the safety kernel.
 ///
 /// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver where the policy
-/// needs one. Ends when the policy is done, or after --duration; SIGINT and SIGTERM stop the
-/// machine, go silent, then exit. After a safety stop SIGUSR1 is the order to arm again.
+/// needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
+/// that time, and SIGUSR1 is then the order to arm again after a safety stop. SIGINT and SIGTERM stop
+/// the machine, go silent, then exit.
 ///
-/// Exit code: 0 done, 1 not done (goal missed, safety stop, interrupted), 2 usage or I/O.
+/// Exit code: 0 done (or interrupted where there was nothing to be done, as in hold), 1 not done
+/// (goal missed, safety stop, interrupted on the way), 2 usage or I/O.
 #[derive(Debug, Parser)]
 #[command(name = "gateway", version)]
 pub(crate) struct Args {

@@ -2,9 +2,9 @@
 //!
 //! Nothing moves outside [`State::Active`], and nothing is active without a command younger than
 //! [`COMMAND_DEADLINE`]. A stream that is there from the start may command at once, so that a
-//! recorded run replays from its first frame. After a safe stop the sender must first ask for rest
-//! in [`REARM_FRAMES`] good frames: a node that dropped out and comes back in the middle of a
-//! manoeuvre does not set the machine moving.
+//! recorded run replays from its first frame. After a safe stop the sender must first ask for rest,
+//! at the earliest in the last of [`REARM_FRAMES`] good frames: a node that dropped out and comes back in
+//! the middle of a manoeuvre does not set the machine moving.
 
 use core::time::Duration;
 
@@ -18,7 +18,7 @@ pub(crate) const PERIOD: Duration = Duration::from_millis(10);
 pub(crate) const PERIOD_S: f64 = 0.01;
 /// A command older than this is lost: three periods.
 pub(crate) const COMMAND_DEADLINE: Duration = PERIOD.saturating_mul(3);
-/// Good frames in a row that end a safe stop, with a request for rest in the last of them.
+/// Good frames without a silence between them that end a safe stop, with a request for rest in the last.
 pub(crate) const REARM_FRAMES: u32 = 3;
 
 /// So long an ECU that has restarted looks at its inputs before it takes part: 100 ms (assumed).

@@ -11,6 +11,7 @@ mod passes_states;
 mod peak_load;
 mod pose;
 mod rear_joint;
+pub(crate) mod sense;
 mod standstill;
 mod step_response;
 mod trouble;

@@ -24,13 +24,15 @@ use xt28_sim::STEP;
 use crate::decode::Decoder;
 use crate::digest::HashingWriter;
 use crate::recording::Recording;
-use crate::{GatewayOrder, Incident, Node, Setup, Truth};
+use crate::{Driven, GatewayOrder, Incident, Node, Setup, Truth};
 
 /// A run under way. Call [`Lockstep::tick`] until it says that the run is over.
 pub struct Lockstep<W: Write> {
     bus: VirtualBus,
     emulator: Option<(NodeId, Emulator)>,
     gateway: Option<(NodeId, Gateway)>,
+    /// What a gateway that was killed had said of itself.
+    driven: Option<Driven>,
     events: Vec<(SimTime, Incident)>,
     now: SimTime,
     end: SimTime,
@@ -89,6 +91,7 @@ impl<W: Write> Lockstep<W> {
             bus,
             emulator: Some(emulator),
             gateway: Some(gateway),
+            driven: None,
             events: scenario.events.iter().map(|e| (instant(e.at_s), e.what)).collect(),
             now: SimTime::ZERO,
             end: instant(scenario.duration_s),
@@ -146,6 +149,7 @@ impl<W: Write> Lockstep<W> {
         Ok(Recording {
             trace: self.decoder.finish(),
             truth: Some(self.truth),
+            driven: account(self.gateway.as_ref()).or(self.driven),
             log_sha256: self.log.into_inner().finish(),
             bus_load,
         })
@@ -164,7 +168,9 @@ impl<W: Write> Lockstep<W> {
     fn befall(&mut self, now: SimTime) {
         for &(_, incident) in self.events.iter().filter(|(at, _)| *at <= now) {
             match incident {
-                Incident::Kill(Node::Gateway) => self.gateway = None,
+                Incident::Kill(Node::Gateway) => {
+                    self.driven = account(self.gateway.take().as_ref());
+                }
                 Incident::Kill(Node::Emulator) => self.emulator = None,
                 Incident::Order(GatewayOrder::Arm) => {
                     if let Some((_, gateway)) = &mut self.gateway {
@@ -211,6 +217,10 @@ impl<W: Write> Lockstep<W> {
             self.bus.send(*node, now, frame);
         }
     }
+}
+
+fn account(gateway: Option<&(NodeId, Gateway)>) -> Option<Driven> {
+    gateway.map(|(_, gateway)| Driven::new(&gateway.status()))
 }
 
 /// What one tick took, by the caller's clock.

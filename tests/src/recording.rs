@@ -6,7 +6,7 @@ use xt28_bus::candump::{ReadError, Reader};
 use xt28_machine::SimTime;
 
 use crate::decode::Decoder;
-use crate::{Report, Setup, Trace, Truth};
+use crate::{Driven, Report, Setup, Trace, Truth};
 
 /// One recorded run, on either kind of bus.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct Recording {
     pub trace: Trace,
     /// What was true, where the runner could see it.
     pub truth: Option<Truth>,
+    /// What the gateway said of itself at its end, where it could.
+    pub driven: Option<Driven>,
     /// SHA-256 of the candump log, hexadecimal.
     pub log_sha256: String,
     /// Share of the time the bus was taken, 0 to 1, where it has a bit rate.
@@ -46,6 +48,7 @@ impl Recording {
             seed: setup.seed,
             bus: bus.to_owned(),
             findings: setup.judge(&self.trace, self.truth.as_ref()),
+            driven: self.driven.clone(),
             simulated_s: setup.scenario.duration_s,
             cost: None,
             log_sha256: self.log_sha256.clone(),

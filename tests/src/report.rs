@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::finding::significant;
-use crate::{Bound, Finding};
+use crate::{Bound, Driven, Finding};
 
 /// Result of one run.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Report {
     pub bus: String,
     /// What was found, in the scenario's order.
     pub findings: Vec<Finding>,
+    /// What the gateway said of itself at its end, where it could.
+    pub driven: Option<Driven>,
     /// Length of the run on its own clock, s.
     pub simulated_s: f64,
     /// What the run cost, if the caller measured it.
@@ -52,7 +54,7 @@ impl Report {
         self.cost.map(|cost| self.simulated_s / cost.wall_s)
     }
 
-    /// A table with one line a finding, and two lines of figures below.
+    /// A table with one line a finding, and lines of figures and the gateway's own account below.
     #[must_use]
     pub fn table(&self) -> String {
         let rows: Vec<[String; 5]> = self.findings.iter().map(row).collect();
@@ -99,6 +101,9 @@ impl Report {
                 text += &format!(", ticks up to {lateness_ms:.1} ms late");
             }
         }
+        if let Some(driven) = &self.driven {
+            text += &format!("\ngateway: {driven}");
+        }
         text + &format!("\nlog sha256 {}\n", self.log_sha256)
     }
 
@@ -111,6 +116,7 @@ impl Report {
             "bus": self.bus,
             "passed": self.passed(),
             "expectations": self.findings.iter().map(finding_json).collect::<Vec<_>>(),
+            "gateway": self.driven,
             "simulated_s": self.simulated_s,
             "wall_s": self.cost.map(|cost| cost.wall_s),
             "real_time_factor": self.real_time_factor(),
@@ -156,6 +162,12 @@ mod tests {
             seed: 7,
             bus: "virtual".to_owned(),
             findings,
+            driven: Some(Driven {
+                armed_at_s: None,
+                safety_stop: None,
+                outcome: "running".to_owned(),
+                reason: Some("roll".to_owned()),
+            }),
             simulated_s: 30.0,
             cost: Some(Cost { wall_s: 0.5, physics_step_us: None, lateness_max_ms: None }),
             log_sha256: "ab".to_owned(),
@@ -182,7 +194,9 @@ mod tests {
         let column = |line: usize, text: &str| table.lines().nth(line).unwrap().find(text);
         assert_eq!(column(0, "unit"), Some(table.lines().next().unwrap().len() - 4));
         assert_eq!(column(1, "here").map(|at| at - 2), column(2, "no fix"), "{table}"); // ≤ has 3 bytes
+        assert!(table.contains("\ngateway: never armed, policy running: roll\n"), "{table}");
         let json = report.json();
+        assert_eq!(json["gateway"]["reason"], "roll");
         assert_eq!(json["passed"], false);
         assert_eq!(json["real_time_factor"], 60.0);
         assert_eq!(json["expectations"][1]["wanted"]["to"], 12.5);

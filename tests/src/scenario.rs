@@ -8,6 +8,7 @@ use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
 use crate::cab_script::{self, CabScript};
+use crate::expect::sense;
 use crate::{Event, Expectation, Ground, Incident, ScenarioError};
 
 /// One scenario as its TOML file states it. Units are in the keys.
@@ -163,6 +164,11 @@ impl Scenario {
                 "needs profile = \"2016\": no cab is heard otherwise".into(),
             );
         }
+        if let Some((name, problem)) = sense::problem(text, self.duration_s) {
+            let (path, line) = (path.to_owned(), line_of(text, &name));
+            let problem = format!("{name}: {problem}");
+            return Err(ScenarioError::Value { path, line, problem });
+        }
         self.terrain.spec.check().map_err(|fault| ScenarioError::Value {
             path: path.to_owned(),
             line: fault.line_in(text, "terrain."),
@@ -302,6 +308,7 @@ stands-still = { below_m_s = 0.02 }
             ("below_m_s", "below_km_h", "a/ramp.toml:17: unknown field `below_km_h`", "below_m_s"),
             ("= 30", "= -1", "a/ramp.toml:4: duration_s = -1", "above 0"),
             ("= 30", "= nan", "a/ramp.toml:4: duration_s = NaN", "above 0"),
+            ("= 0.02", "= nan", "a/ramp.toml:17: stands-still: below_m_s = NaN", "finite"),
             ("at_s = 5.0", "at_s = 31", "a/ramp.toml:13: at_s = 31", "0 to 30"),
             ("7, 8.5", "9, 8.5", "a/ramp.toml:6: [terrain.ramp]", "x_m must grow"),
             ("goto:15,0,0", "script:no.toml", "a/ramp.toml:3: cannot read", "a/no.toml"),

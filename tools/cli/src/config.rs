@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use xt28_machine::Machine;
 
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Show what is in force
@@ -28,16 +29,16 @@ impl Config {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         let Action::Show { machine } = &self.action;
         let Some(path) = machine else {
-            print!("{}", Machine::builtin_text());
+            say!("{}", Machine::builtin_text());
             return Ok(Verdict::Positive);
         };
         Machine::load(path)?;
         let text = std::fs::read_to_string(path)?;
-        print!("{text}");
+        say!("{text}");
         // The one section a file may leave out; what then holds is part of what is in force.
         let optional = Machine::builtin_text().split_once("[vehicle]");
         if let Some((_, section)) = optional.filter(|_| !has_section(&text, "[vehicle]")) {
-            print!("\n# Not in {}: the built-in values hold.\n[vehicle]{section}", path.display());
+            say!("\n# Not in {}: the built-in values hold.\n[vehicle]{section}", path.display());
         }
         Ok(Verdict::Positive)
     }

@@ -4,6 +4,7 @@ use clap::Args;
 use serde_json::json;
 use xt28_sim::effects::{CATALOGUE, Effect, find};
 
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// List the effects that an overlay can add to the plant, or show one as a start for your own
@@ -21,12 +22,12 @@ impl Effects {
         if let Some(name) = &self.name {
             let effect = find(name)
                 .ok_or_else(|| format!("`{name}` is no effect; `xt28 effects` lists them"))?;
-            print!("{}", overlay(effect));
+            say!("{}", overlay(effect));
         } else if self.json {
-            println!("{:#}", json!(CATALOGUE.iter().map(as_json).collect::<Vec<_>>()));
+            say!("{:#}\n", json!(CATALOGUE.iter().map(as_json).collect::<Vec<_>>()));
         } else {
             for effect in CATALOGUE {
-                println!("{:<22} {}", effect.name, effect.meaning);
+                say!("{:<22} {}\n", effect.name, effect.meaning);
             }
         }
         Ok(Verdict::Positive)

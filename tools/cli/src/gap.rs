@@ -42,13 +42,3 @@ fn about(logs: &[PathBuf], given: Option<&PathBuf>) -> Option<PathBuf> {
     let beside = logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
     given.cloned().or_else(|| beside.exists().then_some(beside))
 }
-
-/// Writes `text` into `path`, and says so.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| {
-        let path = path.display();
-        format!("{path}: cannot write: {error}; give a folder that exists and has room")
-    })?;
-    eprintln!("wrote {}", path.display());
-    Ok(())
-}

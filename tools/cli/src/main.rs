@@ -6,6 +6,7 @@
 mod artefacts;
 mod config;
 mod effects;
+mod files;
 mod gap;
 mod pace;
 #[cfg(target_os = "linux")]
@@ -15,6 +16,7 @@ mod processes;
 mod processes;
 mod replay;
 mod run;
+mod say;
 mod scenarios;
 
 use std::error::Error;

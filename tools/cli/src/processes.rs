@@ -16,7 +16,9 @@ use program::{Output, Program};
 use rustix::process::Signal;
 use xt28_bus::SocketCan;
 use xt28_machine::SimTime;
-use xt28_scenarios::{Cost, GatewayOrder, Incident, Node, Quirks, Recording, Setup, Truth, sha256};
+use xt28_scenarios::{
+    Cost, Driven, GatewayOrder, Incident, Node, Quirks, Recording, Setup, Truth, sha256,
+};
 use xt28_sim::TerrainSpec;
 
 use crate::Failure;
@@ -50,10 +52,19 @@ pub(crate) fn run(
     let ahead_s = start.run.since(start.emulator).as_secs_f64();
     let truth = Truth::read(BufReader::new(File::open(&truth)?), TRUTH, -ahead_s)?;
     let log_sha256 = sha256(&fs::read(&log)?);
-    let recording = Recording { trace, truth: Some(truth), log_sha256, bus_load: None };
+    // A gateway that was killed has said nothing.
+    let said = fs::read_to_string(folder.path.join(ACCOUNT))?;
+    let mut driven = serde_json::from_str::<Driven>(&said).ok();
+    if let Some(driven) = &mut driven {
+        // The run's end is what interrupts it.
+        driven.reason.take_if(|reason| reason == "interrupted");
+    }
+    let recording = Recording { trace, truth: Some(truth), driven, log_sha256, bus_load: None };
     Ok((recording, Cost { wall_s, physics_step_us: None, lateness_max_ms: None }))
 }
 
+/// File name of what the gateway says of itself at its end.
+const ACCOUNT: &str = "gateway.json";
 /// File name of the emulator's truth.
 const TRUTH: &str = "truth.csv";
 
@@ -75,7 +86,8 @@ fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<Start, F
     let emulator_start = since_1970()?;
     let arguments = gateway_arguments(setup, bus, gnss, folder)?;
     let (run_start, begun) = (since_1970()?, Instant::now());
-    let mut gateway = Program::start_beside("gateway", &arguments, Output::Nowhere)?;
+    let account = Output::To(File::create(folder.join(ACCOUNT))?);
+    let mut gateway = Program::start_beside("gateway", &arguments, account)?;
 
     let mut events = setup.scenario.events.clone();
     events.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
@@ -166,7 +178,7 @@ fn gateway_arguments(
     // Beyond the run's end, so that a gateway whose task is done stays on the bus to the end.
     let duration_s = setup.scenario.duration_s + BEYOND_S;
     let policy = policy_argument(setup, folder)?;
-    let mut arguments = Vec::new();
+    let mut arguments = vec!["--json".to_owned()];
     let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
     add("--bus", bus.to_owned());
     add("--policy", policy);

@@ -8,6 +8,8 @@ use xt28_machine::Machine;
 use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
+use crate::files::writable;
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Feed the commands of a field log to our machine and compare what both did
@@ -49,6 +51,10 @@ pub(crate) struct Replay {
 
 impl Replay {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        if let Some(plot) = &self.plot {
+            self.ensure_no_input(plot)?;
+            writable([plot.as_path()])?;
+        }
         let mapping =
             self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
         let decoder = Decoder::load(&self.dbc, &mapping)?;
@@ -59,15 +65,28 @@ impl Replay {
         let replay = Run::run(&log, &machine, &effects.effects(), self.solver, &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {
-            println!("{:#}", report.json());
+            say!("{:#}\n", report.json());
         } else {
-            print!("{}", report.table());
+            say!("{}", report.table());
         }
         if let Some(path) = &self.plot {
             replay.draw(&log, path)?;
             eprintln!("wrote {}", path.display());
         }
         Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    /// Refuses to draw over what the replay reads.
+    fn ensure_no_input(&self, plot: &Path) -> Result<(), Failure> {
+        let files = [&self.mapping, &self.machine, &self.effects, &self.terrain, &self.about];
+        let about = self.log.with_file_name("about.toml");
+        let read = files.into_iter().flatten().chain([&self.log, &self.dbc, &about]);
+        let same = |one: &Path| one.canonicalize().ok() == plot.canonicalize().ok();
+        if plot.exists() && read.into_iter().any(|one| same(one)) {
+            let plot = plot.display();
+            return Err(format!("{plot}: the replay reads this file; give --plot another").into());
+        }
+        Ok(())
     }
 
     fn ground(&self) -> Result<Terrain, Failure> {

@@ -11,6 +11,7 @@ use xt28_sim::effects::Overlay;
 
 use crate::artefacts::Artefacts;
 use crate::pace::Pace;
+use crate::say::say;
 use crate::{Failure, Verdict, processes};
 
 /// Run a scenario and say whether it holds
@@ -78,9 +79,9 @@ impl Run {
         let report = Report { cost: Some(cost), ..recording.report(&setup, &self.bus) };
         let files = artefacts.write(&setup, &recording, &report)?;
         if self.json {
-            println!("{:#}", report.json());
+            say!("{:#}\n", report.json());
         } else {
-            print!("{}", report.table());
+            say!("{}", report.table());
         }
         for file in files {
             eprintln!("wrote {}", file.display());

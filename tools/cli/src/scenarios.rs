@@ -4,6 +4,7 @@ use clap::Args;
 use serde_json::json;
 use xt28_scenarios::{BUILTIN, Scenario};
 
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// List the built-in scenarios, or show one as a start for your own
@@ -22,7 +23,7 @@ impl Scenarios {
             Scenario::find(name)?;
             let text = BUILTIN.iter().find(|(builtin, _)| builtin == name);
             let (_, text) = text.ok_or_else(|| format!("`{name}` is a file; print it with cat"))?;
-            print!("{text}");
+            say!("{text}");
             return Ok(Verdict::Positive);
         }
         let scenarios: Result<Vec<_>, _> =
@@ -33,10 +34,10 @@ impl Scenarios {
                 .iter()
                 .map(|s| json!({ "name": s.name, "title": s.title, "duration_s": s.duration_s }))
                 .collect();
-            println!("{}", json!(list));
+            say!("{}\n", json!(list));
         } else {
             for s in scenarios {
-                println!("{:<14} {:>5} s  {}", s.name, s.duration_s, s.title);
+                say!("{:<14} {:>5} s  {}\n", s.name, s.duration_s, s.title);
             }
         }
         Ok(Verdict::Positive)

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn xt28(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
@@ -138,4 +138,55 @@ fn a_misspelt_answer_is_named_before_anything_is_diagnosed() {
     assert!(talk.contains("did you mean `arm-delay`?"), "{talk}");
     let talk = refusal(&["gap", "check", "--set", "no/such"]);
     assert!(talk.contains("no/such: cannot read"), "{talk}");
+}
+
+#[test]
+fn a_file_that_cannot_be_written_is_refused_before_the_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = file(&folder, "a.log", "no log at all");
+    for option in ["--json", "--report", "--overlay", "--next"] {
+        let talk = refusal(&["gap", "diagnose", &log, "--dbc", FIELD_DBC, option, "no/such/out"]);
+        assert!(talk.contains("no/such/out: cannot write"), "{talk}");
+    }
+    let talk = refusal(&["gap", "check", "--json", "no/such/out"]);
+    assert!(talk.contains("no/such/out: cannot write"), "{talk}");
+    let talk =
+        refusal(&["replay", &file(&folder, "b.log", LINE), "--dbc", FIELD_DBC, "--plot", "/"]);
+    assert!(talk.contains("/: cannot write"), "{talk}");
+}
+
+const LINE: &str = "(1.500000) can0 0CFF4027#5555555555551299\n";
+
+#[test]
+fn what_a_command_reads_or_did_not_write_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = file(&folder, "a.log", LINE);
+    let about = file(&folder, "about.toml", "case = \"mine\"");
+    let talk = refusal(&["replay", &log, "--dbc", FIELD_DBC, "--plot", &about]);
+    assert!(talk.contains("about.toml: the replay reads this file"), "{talk}");
+    let mine = file(&folder, "mine.script.toml", "# mine\n");
+    let out = folder.path().join("mine.toml");
+    let talk = refusal(&["gap", "drive", "single-arm", "--out", out.to_str().unwrap()]);
+    assert!(talk.contains("mine.script.toml is there and is not the script of a drive"), "{talk}");
+    assert_eq!(fs::read_to_string(&mine).unwrap(), "# mine\n");
+    assert_eq!(fs::read_to_string(&about).unwrap(), "case = \"mine\"");
+    // Its own it writes again.
+    for _ in 0..2 {
+        let out = folder.path().join("drive.toml");
+        let output = xt28(&["gap", "drive", "straight", "--out", out.to_str().unwrap()]);
+        assert!(output.status.success());
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_xt28"))
+        .args(["config", "show"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
 }

@@ -235,6 +235,12 @@ impl Intake {
         decoder: &Decoder,
         mut kinds: Vec<(u64, FaultKind)>,
     ) -> Result<FieldLog, GapError> {
+        if let Some((line, by_s, left_out)) = self.back
+            && left_out > self.frames / 2
+        {
+            // Not what came after is out of time, but what came before.
+            return Err(GapError::ClockSteps { log: name.to_string(), line, by_s: -by_s });
+        }
         if self.known_frames == 0 && self.frames > 0 {
             return Err(self.stranger(&name));
         }

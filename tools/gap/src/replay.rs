@@ -24,12 +24,15 @@ use xt28_sim::{Effects, Solver, Terrain};
 use crate::commands::{Command, Speaker, commands};
 use crate::comparison::rows;
 use crate::ecu_watch::EcuWatch;
-use crate::{Channel, Decoder, FieldLog, GapError, Mapping, Report, Series, overlay};
+use crate::{Channel, Decoder, FaultKind, FieldLog, GapError, Mapping, Report, Series, overlay};
 
 /// Time at the first commands before the log begins.
 const SETTLE: Duration = Duration::from_secs(5);
 /// The ECUs' tick after the log's zero.
 const PHASE: Duration = Duration::from_millis(1);
+
+/// No bus is silent for longer within a drive, s (assumed); a clock that was set is ahead by days.
+const SILENCE_MAX_S: f64 = 60.0;
 
 /// What our machine did on a log's commands.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +47,8 @@ impl Replay {
     /// twice the same.
     ///
     /// # Errors
-    /// [`GapError::Command`] for a command that our bus cannot say.
+    /// [`GapError::Command`] for a command that our bus cannot say; [`GapError::ClockSteps`] where the
+    /// log's clock leaps ahead.
     pub fn run(
         log: &FieldLog,
         machine: &Machine,
@@ -52,6 +56,7 @@ impl Replay {
         solver: Solver,
         terrain: &Terrain,
     ) -> Result<Self, GapError> {
+        steady(log)?;
         let commands = commands(log, machine.drive.engine_speed_rpm)?;
         let first = |channel| log.series(channel).and_then(|s| s.iter().next()).map(|(_, v)| v);
         // Strokes are logged in whole millimetres, cut off: the middle of the step is meant.
@@ -117,6 +122,17 @@ struct Bench<'a> {
     now: SimTime,
     log: &'a str,
     series: BTreeMap<Channel, Series>,
+}
+
+/// Refuses a log of two clocks, whose leap would be simulated second by second.
+fn steady(log: &FieldLog) -> Result<(), GapError> {
+    let leap = log.faults().iter().find_map(|fault| match fault.kind {
+        FaultKind::ClockAhead { by_s, .. } if by_s > SILENCE_MAX_S => Some((fault.line, by_s)),
+        _ => None,
+    });
+    leap.map_or(Ok(()), |(line, by_s)| {
+        Err(GapError::ClockSteps { log: log.name().to_owned(), line, by_s })
+    })
 }
 
 impl<'a> Bench<'a> {

@@ -5,8 +5,9 @@ use std::io::Write as _;
 use std::path::Path;
 
 use proptest::prelude::*;
-use xt28_gap::{Channel, Decoder, FaultKind, FieldLog, GapError, Mapping};
-use xt28_machine::Wheel;
+use xt28_gap::{Channel, Decoder, FaultKind, FieldLog, GapError, Mapping, Replay, Terrain};
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::{Effects, Solver};
 
 const DBC: &str = include_str!("field.dbc");
 
@@ -119,6 +120,25 @@ fn a_clock_that_jumps_back_is_a_fault_with_its_line() {
         "{back}"
     );
     assert!(back.to_string().starts_with("a.log:451: clock jumps back by 0.290000 s"), "{back}");
+}
+
+#[test]
+fn a_log_whose_first_line_is_of_another_clock_is_refused_with_the_line_after_it() {
+    let late = format!("(9999999999.000000) can0 123#00\n{}", log());
+    let error = read(&late).unwrap_err().to_string();
+    assert!(error.starts_with("a.log:2: clock steps by -9999999989."), "{error}");
+}
+
+#[test]
+fn a_leap_ahead_is_refused_before_it_is_replayed() {
+    let mut lines: Vec<String> = log().lines().map(str::to_owned).collect();
+    lines.insert(450, "(9999999999.000000) can0 123#00".to_owned());
+    lines.truncate(451);
+    let log = read(&(lines.join("\n") + "\n")).unwrap();
+    let replay =
+        Replay::run(&log, &Machine::xt28(), &Effects::default(), Solver::Reduced, &Terrain::Flat);
+    let error = replay.unwrap_err().to_string();
+    assert!(error.starts_with("a.log:451: clock steps by +9999999988."), "{error}");
 }
 
 #[test]

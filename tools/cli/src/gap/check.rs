@@ -1,8 +1,7 @@
 //! `xt28 gap check`: the diagnosis examined on machines whose faults are known and sealed.
 
-use std::fs;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
@@ -11,6 +10,8 @@ use xt28_gap_check::{
     Examination, Examined, Options, Report, Source, Withheld, curve, one_of_each, sweep,
 };
 
+use crate::files::{writable, write};
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Examine the diagnosis on machines whose faults are known, and print every score with its interval
@@ -51,6 +52,9 @@ pub(crate) struct Check {
 
 impl Check {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let seal = self.json.as_ref().map(|json| json.with_extension("seal"));
+        let files = [&self.json, &seal, &self.curve];
+        writable(files.into_iter().flatten().map(PathBuf::as_path))?;
         let sources = match &self.set {
             Some(folder) => Source::in_folder(folder)?,
             None => Source::drawn(self.cases.get(), self.seed),
@@ -62,8 +66,8 @@ impl Check {
         };
         let examination = Examination::sealed(sources, self.seed)?;
         eprintln!("answers sealed as {}", examination.seal());
-        if let Some(json) = &self.json {
-            write(&json.with_extension("seal"), &format!("{}\n", examination.seal()))?;
+        if let Some(seal) = &seal {
+            write(seal, &format!("{}\n", examination.seal()))?;
         }
         let bar = ProgressBar::new(examination.len() as u64)
             .with_style(ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {eta} left")?);
@@ -86,7 +90,7 @@ impl Check {
             let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
             report = report.with_sweep(sweep(&withheld, &told)?);
         }
-        print!("{}", report.text());
+        say!("{}", report.text());
         if let Some(json) = &self.json {
             write(json, &format!("{:#}\n", report.json()))?;
         }
@@ -104,12 +108,6 @@ fn line(examined: &Examined) -> String {
         format!("; likeliest {} {} {:.2}", cause.effect.name, cause.scope, cause.probability)
     });
     format!("{} in {:.1} s: {verdict}{first}", examined.case, examined.seconds)
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    let why =
-        |error| format!("{}: cannot write: {error}; give a folder that exists", path.display());
-    Ok(fs::write(path, text).map_err(why)?)
 }
 
 /// What was said of a machine by a diagnosis that does not know its effect.

@@ -13,8 +13,10 @@ use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
-use super::drive::write_drive;
-use super::{about, write};
+use super::about;
+use super::drive::{ensure_free, write_drive};
+use crate::files::{writable, write};
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Say which unmodelled effect parts a machine from its simulator, with what probability
@@ -81,6 +83,9 @@ pub(crate) struct Diagnose {
 
 impl Diagnose {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
+        let files = [&self.next, &self.json, &self.report, &self.overlay];
+        writable(files.into_iter().flatten().map(PathBuf::as_path))?;
+        self.next.as_deref().map_or(Ok(()), ensure_free)?;
         let start = Instant::now();
         let bar = progress_bar();
         bar.set_message("reading logs");
@@ -98,8 +103,8 @@ impl Diagnose {
         bar.finish_and_clear();
         diagnosis.notes.splice(0..0, notes);
         diagnosis.seconds = start.elapsed().as_secs_f64();
+        say!("{}", page::text(&diagnosis));
         self.write(&inquiry, &diagnosis)?;
-        print!("{}", page::text(&diagnosis));
         Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
     }
 

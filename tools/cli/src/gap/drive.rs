@@ -1,11 +1,13 @@
 //! `xt28 gap drive`: the scripted test drives that a diagnosis asks for.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use xt28_gap::diagnosis::Manoeuvre;
 
-use super::write;
+use crate::files::write;
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Write a scripted test drive for `xt28 run`, by the name that a diagnosis asks for it
@@ -26,7 +28,7 @@ impl Drive {
         let names = || Manoeuvre::all().iter().map(|one| one.name).collect::<Vec<_>>().join(" ");
         let Some(name) = &self.name else {
             for one in Manoeuvre::all() {
-                println!("{:<12} {:>4.0} s", one.name, one.end_s);
+                say!("{:<12} {:>4.0} s\n", one.name, one.end_s);
             }
             return Ok(Verdict::Positive);
         };
@@ -38,13 +40,32 @@ impl Drive {
     }
 }
 
+/// Where the script of a scenario at `path` goes.
+fn script_beside(path: &Path) -> PathBuf {
+    path.with_extension("script.toml")
+}
+
+/// Refuses to replace a file beside `path` that nobody named and that is no drive's script.
+pub(super) fn ensure_free(path: &Path) -> Result<(), Failure> {
+    let script = script_beside(path);
+    match fs::read_to_string(&script) {
+        Ok(text) if !Manoeuvre::wrote(&text) => {
+            let (script, path) = (script.display(), path.display());
+            let problem = "is there and is not the script of a drive";
+            Err(format!("{script} {problem}; give another name than {path}").into())
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes `manoeuvre` into `path`, and its script beside it.
 pub(super) fn write_drive(
     path: &Path,
     manoeuvre: &Manoeuvre,
     good_for: &str,
 ) -> Result<(), Failure> {
-    let script = path.with_extension("script.toml");
+    ensure_free(path)?;
+    let script = script_beside(path);
     let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
     write(&script, &manoeuvre.script())?;
     write(path, &manoeuvre.scenario(&name, good_for))

@@ -10,6 +10,7 @@ use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
 use super::about;
+use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Drive each block of the simulator with what was measured, and say which one parts from the log
@@ -76,12 +77,12 @@ impl Where {
                     "gap_over_floor": gap,
                 })
             });
-            println!("{:#}", json!({ "where": rows.collect::<Vec<_>>() }));
+            say!("{:#}\n", json!({ "where": rows.collect::<Vec<_>>() }));
         } else {
-            println!("{:<26} {:>14}", "block on measured inputs", "gap over floor");
+            say!("{:<26} {:>14}\n", "block on measured inputs", "gap over floor");
             for (generator, gap) in &gaps {
                 let mark = if *gap > GAP_MIN { "  <- to explain" } else { "" };
-                println!("{:<26} {gap:>14.2}{mark}", generator.to_string());
+                say!("{:<26} {gap:>14.2}{mark}\n", generator.to_string());
             }
         }
         let sound = gaps.iter().all(|(_, gap)| *gap <= GAP_MIN);

@@ -26,8 +26,6 @@ pub(super) enum Output {
     To(File),
     /// To [`Program::first_line`].
     Read,
-    /// Away.
-    Nowhere,
 }
 
 /// How long a program may take to end once asked to.
@@ -70,7 +68,6 @@ impl Program {
         let output = match output {
             Output::To(file) => Stdio::from(file),
             Output::Read => Stdio::piped(),
-            Output::Nowhere => Stdio::null(),
         };
         let child = command.args(arguments).stdin(Stdio::null()).stdout(output).spawn()?;
         Ok(Self { name: name.to_owned(), child, ended: false })

@@ -32,7 +32,16 @@ struct Step {
     front_deg: f64,
 }
 
+/// What the first line of every script ends with.
+const PURPOSE: &str = ", to tell causes apart.";
+
 impl Manoeuvre {
+    /// Whether `text` is a script that [`Self::script`] made, of whichever drive.
+    #[must_use]
+    pub fn wrote(text: &str) -> bool {
+        text.lines().next().is_some_and(|line| line.starts_with('#') && line.ends_with(PURPOSE))
+    }
+
     /// All of them: a ramp is not among them, for it needs one to be built.
     #[must_use]
     pub fn all() -> Vec<Self> {
@@ -42,7 +51,7 @@ impl Manoeuvre {
     /// The script for the gateway's policy `script:FILE`.
     #[must_use]
     pub fn script(&self) -> String {
-        let mut text = format!("# {}, to tell causes apart.\nend_s = {}\n", self.name, self.end_s);
+        let mut text = format!("# {}{PURPOSE}\nend_s = {}\n", self.name, self.end_s);
         for step in &self.steps {
             let [fr, fl, mr, ml, br, bl] = step.stroke_mm.0;
             let _ = write!(

@@ -258,8 +258,7 @@ impl Machine {
             line: error.span().map_or(1, |span| line_of(text, span.start)),
             problem: error.message().replace('\n', " "),
         })?;
-        if let Some((key, value)) = range::beyond_all_machines(text) {
-            let must = "it must be finite, and no further from zero than 1e9";
+        if let Some((key, value, must)) = range::beyond_all_machines(text) {
             return Err(MachineError::Range { path: path.to_owned(), key, value, must });
         }
         machine.check(path)?;
@@ -313,7 +312,8 @@ impl Machine {
             let found = [&self.wheels.circuit_1[..], &self.wheels.circuit_2[..]].concat().join(" ");
             return Err(MachineError::Circuits { path: path.to_owned(), found });
         }
-        let fault = range::too_low(self).or_else(|| self.levelling.fault());
+        let fault = range::too_low(self).or_else(|| range::misplaced(self));
+        let fault = fault.or_else(|| self.levelling.fault());
         if let Some((key, value, must)) = fault {
             let key = key.to_owned();
             return Err(MachineError::Range { path: path.to_owned(), key, value, must });

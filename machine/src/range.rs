@@ -4,23 +4,72 @@ use crate::Machine;
 
 /// Nothing of a machine is further from zero, whatever its unit (assumed): the stiffest is 8e6 N/m.
 const MAGNITUDE_MAX: f64 = 1e9;
+/// Nor longer, m (assumed).
+const LENGTH_MAX_M: f64 = 100.0;
+/// What may lie on either side of zero; all else is a size or a gain.
+const SIGNED: [&str; 9] = [
+    "front_com_m",
+    "middle_com_m",
+    "rear_com_m",
+    "front_joint_x_m",
+    "rear_joint_x_m",
+    "axle_x_m",
+    "gnss_antenna_m",
+    "angle_frame_rad",
+    "angle_arm_rad",
+];
 
-/// The first number of a machine file's `text` that no machine can have, with section and key.
-pub(crate) fn beyond_all_machines(text: &str) -> Option<(String, f64)> {
+/// The first number of a machine file's `text` that no machine can have: section and key, the value, what
+/// it must be.
+pub(crate) fn beyond_all_machines(text: &str) -> Option<(String, f64, &'static str)> {
     let sections: toml::Table = toml::from_str(text).ok()?;
     sections.iter().find_map(|(section, keys)| {
-        let of_key = |(key, value)| Some((format!("{section}.{key}"), beyond(value)?));
-        keys.as_table()?.iter().find_map(of_key)
+        keys.as_table()?.iter().find_map(|(key, value)| {
+            let (value, must) = beyond(key, value)?;
+            Some((format!("{section}.{key}"), value, must))
+        })
     })
 }
 
-/// The first such number in a value or a list of them.
-fn beyond(value: &toml::Value) -> Option<f64> {
-    match value {
-        toml::Value::Float(x) => (x.is_nan() || x.abs() > MAGNITUDE_MAX).then_some(*x),
-        toml::Value::Array(list) => list.iter().find_map(beyond),
-        _ => None,
+/// The first such number in the value of `key`, or in a list of them.
+fn beyond(key: &str, value: &toml::Value) -> Option<(f64, &'static str)> {
+    let number = match value {
+        toml::Value::Float(x) => *x,
+        toml::Value::Array(list) => return list.iter().find_map(|value| beyond(key, value)),
+        _ => return None,
+    };
+    // Newtons to a metre are no length.
+    let is_length = key.ends_with("_m") && !key.contains("_n_");
+    if number.is_nan() || number.abs() > MAGNITUDE_MAX {
+        Some((number, "it must be finite, and no further from zero than 1e9"))
+    } else if is_length && number.abs() > LENGTH_MAX_M {
+        Some((number, "it must be no further from zero than 100 m"))
+    } else if number < 0.0 && !SIGNED.contains(&key) {
+        Some((number, "it must be at least zero"))
+    } else {
+        None
     }
+}
+
+/// A place that is on the wrong side: section and key, the value, what it must be.
+pub(crate) fn misplaced(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
+    let Machine { articulation, wheels, sensors, .. } = machine;
+    let [front_m, middle_m, rear_m] = wheels.axle_x_m;
+    let backward = [
+        ("wheels.axle_x_m", front_m),
+        ("articulation.front_joint_x_m", articulation.front_joint_x_m),
+        ("wheels.axle_x_m", middle_m),
+        ("articulation.rear_joint_x_m", articulation.rear_joint_x_m),
+        ("wheels.axle_x_m", rear_m),
+    ];
+    let order = "front axle, front joint, middle axle, rear joint and rear axle must follow one another \
+                 backward, x forward";
+    let wrong = backward.windows(2).find(|pair| pair[1].1 >= pair[0].1).map(|pair| pair[1]);
+    if let Some((key, value)) = wrong {
+        return Some((key, value, order));
+    }
+    let high_m = sensors.gnss_antenna_m[2];
+    (high_m <= 0.0).then_some(("sensors.gnss_antenna_m", high_m, "it must be above the ground"))
 }
 
 /// A number that is too low: section and key, the value, what it must be.
@@ -34,6 +83,7 @@ pub(crate) fn too_low(machine: &Machine) -> Option<(&'static str, f64, &'static 
         ("masses.arm_kg", masses.arm_kg),
         ("masses.wheel_kg", masses.wheel_kg),
         ("articulation.angle_max_deg", articulation.angle_max_deg),
+        ("articulation.rate_max_deg_s", articulation.rate_max_deg_s),
         ("articulation.torque_max_nm", articulation.torque_max_nm),
         ("wheels.radius_m", wheels.radius_m),
         ("wheels.track_m", wheels.track_m),
@@ -54,7 +104,10 @@ pub(crate) fn too_low(machine: &Machine) -> Option<(&'static str, f64, &'static 
         ("vehicle.tyre_relaxation_m", vehicle.tyre_relaxation_m),
         ("vehicle.joint_stiffness_nm", vehicle.joint_stiffness_nm),
         ("hydraulics.speed_full_m_s", hydraulics.speed_full_m_s),
+        ("hydraulics.flow_full_m3_s", hydraulics.flow_full_m3_s),
         ("hydraulics.lock_stiffness_n_m", hydraulics.lock_stiffness_n_m),
+        ("hydraulics.manual_opening_max", hydraulics.manual_opening_max),
+        ("hydraulics.manual_stroke_max_m", hydraulics.manual_stroke_max_m),
         ("drive.speed_full_m_s", drive.speed_full_m_s),
         ("drive.engine_speed_rpm", drive.engine_speed_rpm),
         ("drive.engine_torque_max_nm", drive.engine_torque_max_nm),
@@ -62,17 +115,8 @@ pub(crate) fn too_low(machine: &Machine) -> Option<(&'static str, f64, &'static 
         ("drive.speed_time_constant_s", drive.speed_time_constant_s),
         ("sensors.gnss_rate_hz", sensors.gnss_rate_hz),
     ];
-    // A machine may stand on ice.
-    let zero_or_more = [
-        ("wheels.friction", wheels.friction),
-        ("wheels.rolling_resistance", wheels.rolling_resistance),
-    ];
-    let above = positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0));
-    let above = above.map(|(key, value)| (key, value, "it must be finite and above zero"));
-    above.or_else(|| {
-        let low = zero_or_more.into_iter().find(|(_, value)| *value < 0.0);
-        low.map(|(key, value)| (key, value, "it must be at least zero"))
-    })
+    let low = positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0));
+    low.map(|(key, value)| (key, value, "it must be finite and above zero"))
 }
 
 #[cfg(test)]
@@ -113,7 +157,47 @@ mod tests {
             let error = refusal("force_max_n = 270000.0", &format!("force_max_n = {bad}"));
             assert!(error.contains("arms.force_max_n"), "{error}");
         }
-        let error = refusal("friction = 0.7 ", "friction = -0.7 ");
-        assert!(error.contains("wheels.friction"), "{error}");
+    }
+
+    #[test]
+    fn what_has_no_sign_is_no_less_than_zero() {
+        for (from, key) in [
+            ("friction = 0.7 ", "wheels.friction"),
+            ("lock_damping_n_s_m = 8.5e4 ", "hydraulics.lock_damping_n_s_m"),
+            ("return_pressure_pa = 5.0e5 ", "hydraulics.return_pressure_pa"),
+            ("front_box_m = [3.4,", "frames.front_box_m"),
+            ("kp_per_deg = 0.025 ", "articulation.kp_per_deg"),
+            ("gnss_position_m = 0.005 ", "sensors.gnss_position_m"),
+            ("circuit_gain_nms = 10000.0 ", "vehicle.circuit_gain_nms"),
+        ] {
+            let negative = if from.contains('[') {
+                from.replace("= [", "= [-")
+            } else {
+                from.replace("= ", "= -")
+            };
+            let error = refusal(from, &negative);
+            assert!(error.starts_with(&format!("m.toml: {key} = -")), "{error}");
+        }
+    }
+
+    #[test]
+    fn places_lie_on_their_side_and_no_further_than_a_machine_is_long() {
+        for (from, to, wanted) in [
+            (
+                "front_joint_x_m = -1.85",
+                "front_joint_x_m = 1.85",
+                "articulation.front_joint_x_m = 1.85",
+            ),
+            ("[0.0, -3.70, -6.05]", "[0.0, 3.70, 6.05]", "wheels.axle_x_m = 3.7"),
+            ("[-0.30, 0.0, 3.1]", "[0.30, 0.0, -3.1]", "sensors.gnss_antenna_m = -3.1"),
+            (
+                "rear_joint_x_m = -4.875",
+                "rear_joint_x_m = -1e9",
+                "articulation.rear_joint_x_m = -1",
+            ),
+        ] {
+            let error = refusal(from, to);
+            assert!(error.starts_with(&format!("m.toml: {wanted}")), "{error}");
+        }
     }
 }

@@ -45,11 +45,14 @@ pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecE
     }
 }
 
+/// No goal is further from its origin, m: nothing on the ground is.
+const COORDINATE_MAX: f64 = 1e6;
+
 fn goal_pose(text: &str) -> Option<Pose> {
     let numbers: Vec<f64> =
         text.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
     let [east_m, north_m, heading_deg] = numbers[..] else { return None };
-    numbers.iter().all(|n| n.is_finite()).then(|| Pose {
+    numbers.iter().all(|n| n.abs() <= COORDINATE_MAX).then(|| Pose {
         east_m,
         north_m,
         heading_rad: crate::pose::wrap(heading_deg.to_radians()),
@@ -66,7 +69,7 @@ mod tests {
         for good in ["goto:25,0,0", "goto: 24.5, -4.98, -23", "hold"] {
             assert!(from_spec(good, &machine).is_ok(), "{good}");
         }
-        for bad in ["goto:25,0", "goto:25,0,nan", "goto:", "goto:1,2,3,4"] {
+        for bad in ["goto:25,0", "goto:25,0,nan", "goto:1e300,0,0", "goto:", "goto:1,2,3,4"] {
             let error = from_spec(bad, &machine).err().unwrap().to_string();
             assert!(error.contains("goto:25,0,0"), "{error}");
         }

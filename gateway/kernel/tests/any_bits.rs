@@ -82,6 +82,30 @@ prop_compose! {
     }
 }
 
+/// Limits that can be held to, from none at all to no limit; the machine stands level within them.
+fn sound_limits() -> impl Strategy<Value = Limits> {
+    let limit = prop_oneof![4 => 0.0..2.0_f64, 1 => Just(0.0), 1 => Just(1e300)];
+    (proptest::array::uniform9(limit), 0.01..1.0_f64).prop_map(|(floats, lean)| {
+        let [s0, s1, s2, o, t0, t1, a0, a1, a2] = floats;
+        let limits = Limits {
+            stroke_max_m: s0,
+            stroke_rate_m_s: s1,
+            stroke_error_m: s2,
+            opening_max: o,
+            throttle_max: t0,
+            throttle_rate_s: t1,
+            angle_max_rad: a0,
+            angle_rate_rad_s: a1,
+            angle_error_rad: a2,
+            roll_max_rad: lean,
+            pitch_max_rad: lean,
+            ..LIMITS
+        };
+        assert!(limits.are_sound());
+        limits
+    })
+}
+
 fn assert_within(limits: &Limits, command: &Command) {
     assert!(command.is_finite(), "{command:?}");
     assert!(command.throttle.abs() <= limits.throttle_max);
@@ -163,7 +187,21 @@ proptest! {
     }
 
     #[test]
-    fn limits_of_any_bits_never_panic_and_hold_when_sound(
+    fn sound_limits_hold_whatever_they_are(
+        limits in sound_limits(), front_angle_rad in -0.5..0.5_f64,
+        requests in proptest::collection::vec(command(finite().boxed()), 1..40),
+    ) {
+        let mut bench = Bench::armed_within(limits);
+        bench.measured.front_angle_rad = front_angle_rad;
+        for request in requests {
+            let verdict = bench.run(Order::None, request);
+            check(&limits, bench.state, &verdict);
+            prop_assert!(bench.state.is_armed(), "{:?}", verdict);
+        }
+    }
+
+    #[test]
+    fn limits_of_any_bits_never_panic(
         floats in proptest::array::uniform11(bits()), periods in any::<u32>(),
         period_ns in any::<u64>(), modulus in any::<u8>(), lag in any::<u8>(),
         inputs in proptest::collection::vec(any_input(), 1..4),

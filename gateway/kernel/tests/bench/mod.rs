@@ -10,6 +10,7 @@ pub(crate) const LIMITS: Limits = Limits::XT28;
 
 /// Kernel, time and the counters both sides are at.
 pub(crate) struct Bench {
+    pub(crate) limits: Limits,
     pub(crate) state: State,
     pub(crate) now_ns: u64,
     pub(crate) counter: u8,
@@ -20,12 +21,17 @@ impl Bench {
     pub(crate) fn new() -> Self {
         let measured =
             Measured { stroke_m: [0.17; 6], front_angle_rad: 0.0, roll_rad: 0.0, pitch_rad: 0.0 };
-        Self { state: State::new(), now_ns: 1_000_000_000, counter: 0, measured }
+        Self { limits: LIMITS, state: State::new(), now_ns: 1_000_000_000, counter: 0, measured }
     }
 
     /// Armed, after an order and a whole handshake.
     pub(crate) fn armed() -> Self {
-        let mut bench = Self::new();
+        Self::armed_within(LIMITS)
+    }
+
+    /// The same held to other limits.
+    pub(crate) fn armed_within(limits: Limits) -> Self {
+        let mut bench = Self { limits, ..Self::new() };
         bench.run(Order::Arm, coast());
         for _ in 0..LIMITS.handshake_steps {
             bench.run(Order::None, coast());
@@ -56,7 +62,7 @@ impl Bench {
 
     /// One step on `input`, then one period on.
     pub(crate) fn feed(&mut self, input: &Input) -> Verdict {
-        let (state, verdict) = step(&LIMITS, self.state, input, self.now_ns);
+        let (state, verdict) = step(&self.limits, self.state, input, self.now_ns);
         self.state = state;
         self.now_ns += TICK_NS;
         self.counter = (self.counter + 1) % LIMITS.counter_modulus;

@@ -10,8 +10,8 @@ use drift::{Drift, drive};
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::terrain::{Extent, Grid};
 use xt28_sim::{
-    Actuation, Bodies, Effects, Loads, Parts, Placed, Plant, RapierBodies, ReducedBodies, STEP,
-    Terrain, Vehicle,
+    Actuation, Effects, Loads, Parts, Placed, Plant, RapierBodies, ReducedBodies, STEP, Terrain,
+    Vehicle,
 };
 
 /// A placed machine shows the state that it was placed at.
@@ -69,16 +69,21 @@ fn stays_near_the_snapshot<B: Placed>() {
     }
 }
 
-/// The fast core spares itself the search for the hull's contacts while it knows the hull far from
+/// Both solvers spare themselves the search for the hull's contacts while they know the hull far from
 /// the ground; that knowledge ends where the machine is put elsewhere.
 #[test]
 fn a_machine_put_over_a_stump_feels_it_at_once() {
+    put_over_a_stump::<RapierBodies>();
+    put_over_a_stump::<ReducedBodies>();
+}
+
+fn put_over_a_stump<B: Placed>() {
     // 0.6 m high, ahead of a machine whose underside is 0.38 m above the ground.
     let stump = |x: f64, y: f64| (2.6..=3.0).contains(&x) && y.abs() <= 0.2;
     let height_m = |x, y| if stump(x, y) { 0.6 } else { 0.0 };
     let terrain = Terrain::Grid(Arc::new(Grid::from_fn(Extent::default(), height_m)));
     let parts = Parts::new(&Machine::xt28(), &Effects::default());
-    let mut bodies = ReducedBodies::new(&parts, &terrain, PerWheel::splat(0.05));
+    let mut bodies = B::new(&parts, &terrain, PerWheel::splat(0.05));
     bodies.advance(&Loads::default(), STEP.as_secs_f64());
     let mut motion = bodies.motion();
     assert_eq!(motion.chassis_force_n, 0.0);

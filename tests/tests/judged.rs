@@ -67,12 +67,12 @@ fn standing_means_wheels_and_antenna() {
         let speed = PerWheel::from_fn(|wheel| 0.05 * wheel.side().sign());
         trace.wheel_speed_rad_s.push(at_s, speed);
     });
-    assert_eq!(verdicts(expect, &spinning), [false]);
+    assert_eq!(verdicts(expect, &spinning), [false, false], "and no fix says where it is");
     let stopped = trace(|trace, at_s| {
         let speed = if at_s < 7.9 { 1.0 } else { 0.0 };
         trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(speed));
     });
-    assert_eq!(verdicts(expect, &stopped), [true]);
+    assert_eq!(verdicts(expect, &stopped), [true, false]);
 }
 
 /// A machine at `stroke_m` whose cylinders carry what lies above them, times `factor`.
@@ -285,10 +285,19 @@ fn a_step_is_judged_by_rise_overshoot_and_what_is_left() {
     let found = judge(expect, &answering(0.5, 0.0));
     assert!((found[0].measured.unwrap() - 0.5 * 9_f64.ln()).abs() < 0.02, "{found:?}");
     assert!(found.iter().all(Finding::passed), "{found:?}");
-    assert_eq!(verdicts(expect, &answering(0.6, 0.0)), [false, true, true]);
-    assert_eq!(verdicts(expect, &answering(0.5, 0.0015)), [true, true, false]);
-    assert_eq!(verdicts(expect, &answering(0.5, 0.003)), [true, false, false]);
+    assert_eq!(verdicts(expect, &answering(0.6, 0.0)), [false, false, true, true]);
+    assert_eq!(verdicts(expect, &answering(0.5, 0.0015)), [true, true, true, false]);
+    assert_eq!(verdicts(expect, &answering(0.5, 0.003)), [true, true, false, false]);
+    assert_eq!(verdicts(expect, &answering(0.4, 0.0)), [false, false, true, true], "too quick");
     let stuck = answering(1e9, 0.0);
-    assert_eq!(verdicts(expect, &stuck), [false, true, false]);
+    assert_eq!(verdicts(expect, &stuck), [false, false, true, false]);
+    let two = expect.replace("[\"FR\"]", "[\"FR\", \"BL\"]");
+    let one_steps = trace(|trace, at_s| {
+        let target_m = if at_s < 1.0 { 0.0 } else { 0.1 };
+        let alone = |m| PerWheel::from_fn(|w| if w == Wheel::Fr { m } else { 0.0 });
+        trace.stroke_target_m.push(at_s, alone(target_m).map(Some));
+        trace.stroke_m.push(at_s, alone(target_m));
+    });
+    assert_eq!(verdicts(&two, &one_steps), [false, false, false], "BL never steps");
     assert_eq!(verdicts(expect, &Trace::default()), [false, false, false]);
 }

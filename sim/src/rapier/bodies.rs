@@ -13,8 +13,7 @@ use super::tyre_contact::{Rim, Tread, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
-/// Longest step of the engine, s. The tyres act as forces of a step's start; at 120 Hz that was 8 cm off
-/// in ten seconds, and at 60 Hz wrong. Longer steps are made of several.
+/// Longest step of the engine, s; longer ones are made of several (tyres were 8 cm off at 120 Hz).
 const LONGEST_S: f64 = 0.005;
 /// Index of a hinge's own angle among a joint's six coordinates.
 const HINGE: usize = 3;
@@ -155,12 +154,13 @@ impl Placed for RapierBodies {
             move_by[link.assembly_id()] -= link.joint().coords()[HINGE];
         }
         self.world.bodies[self.frames[0]].set_position(Pose::from_parts(com, turn), false);
-        let world = &mut self.world;
-        let multibody = multibody_of(&mut world.multibody_joints, self.frames[0]);
+        self.hulls.iter_mut().for_each(HullWatch::look_again);
+        let PhysicsWorld { multibody_joints, bodies, .. } = &mut self.world;
+        let multibody = multibody_of(multibody_joints, self.frames[0]);
         multibody.apply_displacements(&move_by);
         multibody.generalized_velocity_mut().copy_from_slice(&velocity);
-        multibody.forward_kinematics(&world.bodies, true);
-        multibody.update_rigid_bodies(&mut world.bodies, true);
+        multibody.forward_kinematics(bodies, true);
+        multibody.update_rigid_bodies(bodies, true);
     }
 }
 

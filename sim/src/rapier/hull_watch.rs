@@ -57,6 +57,11 @@ impl HullWatch {
         self.collider
     }
 
+    /// Forgets how far the ground was: the machine has been put elsewhere.
+    pub(super) const fn look_again(&mut self) {
+        self.free_m = 0.0;
+    }
+
     /// Looks at the ground if the frame may have come near it within the next `dt_s` s.
     pub(super) fn look(&mut self, world: &mut PhysicsWorld, terrain: &Terrain, dt_s: f64) {
         let body = &world.bodies[self.frame];

@@ -32,7 +32,8 @@ pub struct GnssReceiver {
     due: SimTime,
     accuracy_m: f64,
     delay_s: f64,
-    past: Past,
+    /// None before the first look.
+    past: Option<Past>,
     noise: Option<Noise>,
 }
 
@@ -40,7 +41,7 @@ pub struct GnssReceiver {
 const LOOK_S: f64 = 0.01;
 
 /// Where the antenna was, for a receiver that is late.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Past {
     position: [DelayLine; 3],
     velocity: [DelayLine; 3],
@@ -49,12 +50,13 @@ struct Past {
 }
 
 impl Past {
-    fn new(delay_s: f64) -> Self {
+    /// An antenna that has been for long where `state` has it.
+    fn new(state: &VehicleState, delay_s: f64) -> Self {
         let line = |value| DelayLine::new(delay_s, LOOK_S, value);
         Self {
-            position: [(); 3].map(|()| line(0.0)),
-            velocity: [(); 3].map(|()| line(0.0)),
-            heading: [line(1.0), line(0.0)],
+            position: state.antenna_position_m.map(line),
+            velocity: state.antenna_velocity_m_s.map(line),
+            heading: [line(state.yaw_rad.cos()), line(state.yaw_rad.sin())],
         }
     }
 
@@ -94,7 +96,7 @@ impl GnssReceiver {
             due: SimTime::ZERO,
             accuracy_m: s.gnss_position_m,
             delay_s: effects.sensors.gnss_latency.delay_s,
-            past: Past::new(effects.sensors.gnss_latency.delay_s),
+            past: None,
             noise: seed.map(|seed| Noise {
                 random: ChaCha8Rng::seed_from_u64(seed),
                 position_m: normal(s.gnss_position_m),
@@ -107,7 +109,10 @@ impl GnssReceiver {
 
     /// The fix that is due at `now`, if one is. To be asked every 10 ms.
     pub fn step(&mut self, now: SimTime, state: &VehicleState) -> Option<GnssFix> {
-        let late = (self.delay_s > 0.0).then(|| self.past.step(state, self.delay_s));
+        let late = (self.delay_s > 0.0).then(|| {
+            let past = self.past.get_or_insert_with(|| Past::new(state, self.delay_s));
+            past.step(state, self.delay_s)
+        });
         let state = late.as_ref().unwrap_or(state);
         if now < self.due {
             return None;
@@ -135,6 +140,21 @@ impl GnssReceiver {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_late_receiver_begins_where_the_antenna_stands() {
+        let mut effects = Effects::default();
+        effects.sensors.gnss_latency.delay_s = 2.0;
+        let mut receiver = GnssReceiver::new(&Machine::xt28(), &effects, None);
+        let state = VehicleState {
+            antenna_position_m: [-0.3, 0.0, 3.1],
+            yaw_rad: 1.0,
+            ..VehicleState::default()
+        };
+        let fix = receiver.step(SimTime::ZERO, &state).unwrap();
+        assert_eq!(fix.position_m, state.antenna_position_m);
+        assert!((fix.heading_rad - 1.0).abs() < 1e-12);
+    }
 
     #[test]
     fn eight_fixes_a_second_with_the_stated_noise() {

@@ -16,6 +16,9 @@ pub(crate) fn problem(text: &str, duration_s: f64) -> Option<(String, String)> {
 
 fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
     keys.iter().find_map(|(key, value)| {
+        if value.as_array().is_some_and(Vec::is_empty) {
+            return Some(format!("{key} = [] must name at least one"));
+        }
         let numbers = match value {
             Value::Array(list) => list.iter().filter_map(number).collect(),
             one => number(one).into_iter().collect::<Vec<_>>(),
@@ -62,6 +65,7 @@ mod tests {
         for (keys, wanted) in [
             ("below_m_s = nan", "stands-still: below_m_s = NaN must be finite"),
             ("within_m = -1", "stands-still: within_m = -1 must be at least zero"),
+            ("wheels = []", "stands-still: wheels = [] must name at least one"),
             ("to_s = 500", "stands-still: to_s = 500 must be within the run, 0 to 45"),
             ("rise_s = [0.1, inf]", "stands-still: rise_s = inf must be finite"),
             ("from_kn = 9.5, to_kn = 2", "stands-still: from_kn = 9.5 must be at most to_kn = 2"),

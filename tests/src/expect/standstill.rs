@@ -1,11 +1,11 @@
-//! Ends standing: neither the wheels nor the antenna move over the last seconds.
+//! Ends standing: neither the wheels, in the mean of all, nor the antenna move over the last seconds.
 
 use serde::Deserialize;
 use xt28_machine::PerWheel;
 
 use super::Evidence;
 use crate::series::slope;
-use crate::{Bound, Finding};
+use crate::{Bound, Finding, Incident};
 
 /// Stands still at the end.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -24,7 +24,7 @@ fn two_seconds() -> f64 {
 
 impl StandsStill {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
-        let Evidence { trace, machine, .. } = evidence;
+        let Evidence { scenario, trace, machine, .. } = evidence;
         let wanted = Bound::AtMost(self.below_m_s);
         let from_s = trace.end_s - self.over_s;
         let wheels = trace.wheel_speed_rad_s.between(from_s, trace.end_s);
@@ -34,11 +34,16 @@ impl StandsStill {
             Some(rad_s) => Finding::of(what, rad_s * machine.wheels.radius_m, wanted, "m/s"),
             None => Finding::missing(what, wanted, "m/s", "no WheelSpeedSigned at the end"),
         }];
-        // Without a gateway there are no fixes; the wheels then speak alone.
+        let drift = "antenna drift at the end";
         let fixes = trace.antenna_m.between(from_s, trace.end_s);
         if let (Some(east), Some(north)) = (slope(fixes, |p| p[0]), slope(fixes, |p| p[1])) {
             let drift_m_s = east.hypot(north);
-            findings.push(Finding::of("antenna drift at the end", drift_m_s, wanted, "m/s"));
+            findings.push(Finding::of(drift, drift_m_s, wanted, "m/s"));
+        } else if fixes.is_empty()
+            && !scenario.events.iter().any(|e| matches!(e.what, Incident::Kill(_)))
+        {
+            // A gateway that is gone sends no fixes; the wheels then speak alone.
+            findings.push(Finding::missing(drift, wanted, "m/s", "no GNSS fix at the end"));
         }
         findings
     }

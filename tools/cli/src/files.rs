@@ -18,6 +18,20 @@ pub(crate) fn writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<
     Ok(())
 }
 
+/// Refuses to write over one of the files that a command reads; `option` names what is to be written.
+pub(crate) fn no_input<'a>(
+    path: &Path,
+    option: &str,
+    read: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    let Ok(own) = path.canonicalize() else { return Ok(()) };
+    if read.into_iter().any(|one| one.canonicalize().is_ok_and(|one| one == own)) {
+        let path = path.display();
+        return Err(format!("{path}: this command reads that file; give {option} another").into());
+    }
+    Ok(())
+}
+
 /// Writes `text` into `path`, and says so.
 pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     fs::write(path, text).map_err(|error| refusal(path, &error))?;

@@ -8,7 +8,7 @@ use xt28_machine::Machine;
 use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
-use crate::files::writable;
+use crate::files::{no_input, writable};
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -52,7 +52,10 @@ pub(crate) struct Replay {
 impl Replay {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         if let Some(plot) = &self.plot {
-            self.ensure_no_input(plot)?;
+            let files = [&self.mapping, &self.machine, &self.effects, &self.terrain, &self.about];
+            let about = self.log.with_file_name("about.toml");
+            let read = files.into_iter().flatten().chain([&self.log, &self.dbc, &about]);
+            no_input(plot, "--plot", read.map(PathBuf::as_path))?;
             writable([plot.as_path()])?;
         }
         let mapping =
@@ -74,19 +77,6 @@ impl Replay {
             eprintln!("wrote {}", path.display());
         }
         Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
-    }
-
-    /// Refuses to draw over what the replay reads.
-    fn ensure_no_input(&self, plot: &Path) -> Result<(), Failure> {
-        let files = [&self.mapping, &self.machine, &self.effects, &self.terrain, &self.about];
-        let about = self.log.with_file_name("about.toml");
-        let read = files.into_iter().flatten().chain([&self.log, &self.dbc, &about]);
-        let same = |one: &Path| one.canonicalize().ok() == plot.canonicalize().ok();
-        if plot.exists() && read.into_iter().any(|one| same(one)) {
-            let plot = plot.display();
-            return Err(format!("{plot}: the replay reads this file; give --plot another").into());
-        }
-        Ok(())
     }
 
     fn ground(&self) -> Result<Terrain, Failure> {

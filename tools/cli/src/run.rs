@@ -1,6 +1,6 @@
 //! `xt28 run`: one scenario, on the virtual bus in lockstep or as programs on a real one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
@@ -10,6 +10,7 @@ use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
 use crate::artefacts::Artefacts;
+use crate::files::no_input;
 use crate::pace::Pace;
 use crate::say::say;
 use crate::{Failure, Verdict, processes};
@@ -68,6 +69,13 @@ impl Run {
         setup.solver = self.solver;
         if let Some(path) = &self.effects {
             setup.overlay.entries.extend(Overlay::load(path)?.entries);
+        }
+        if let Some(record) = &self.record {
+            let scenario = &setup.scenario;
+            let script = scenario.script.as_ref().map(|script| script.path.as_path());
+            let files = [self.effects.as_deref(), scenario.machine.as_deref(), script];
+            let read = files.into_iter().flatten().chain([Path::new(&self.scenario)]);
+            no_input(record, "--record", read)?;
         }
         let name = &setup.scenario.name;
         let artefacts = Artefacts::new(name, self.record.as_deref(), self.out.as_deref())?;

@@ -163,7 +163,11 @@ fn what_a_command_reads_or_did_not_write_is_not_replaced() {
     let log = file(&folder, "a.log", LINE);
     let about = file(&folder, "about.toml", "case = \"mine\"");
     let talk = refusal(&["replay", &log, "--dbc", FIELD_DBC, "--plot", &about]);
-    assert!(talk.contains("about.toml: the replay reads this file"), "{talk}");
+    assert!(talk.contains("about.toml: this command reads that file"), "{talk}");
+    let scenario = file(&folder, "s.toml", SCENARIO);
+    let talk = refusal(&["run", &scenario, "--record", &scenario]);
+    assert!(talk.contains("s.toml: this command reads that file; give --record"), "{talk}");
+    assert_eq!(fs::read_to_string(&scenario).unwrap(), SCENARIO);
     let mine = file(&folder, "mine.script.toml", "# mine\n");
     let out = folder.path().join("mine.toml");
     let talk = refusal(&["gap", "drive", "single-arm", "--out", out.to_str().unwrap()]);

@@ -40,6 +40,12 @@ pub struct HeightMap {
     pub white_m: Option<f64>,
 }
 
+/// No ground is higher, nor deeper, m: what else a file says is its word for no data.
+const HEIGHT_MAX_M: f32 = 9e3;
+/// What to do about a height that is none.
+const NO_HEIGHT: &str =
+    "heights lie within 9 km of zero, and a file's no-data value says what is no height";
+
 /// What a file is, by its ending.
 enum Format {
     AsciiGrid,
@@ -57,6 +63,12 @@ impl HeightMap {
         let start_m = self.start_m.into_iter().flatten();
         if !numbers.into_iter().flatten().chain(start_m).all(f64::is_finite) {
             return Err("every number of a height map must be finite".to_owned());
+        }
+        let heights = [self.level_m, self.fill_m, self.black_m, self.white_m];
+        if let Some(height) =
+            heights.into_iter().flatten().find(|height| height.abs() > f64::from(HEIGHT_MAX_M))
+        {
+            return Err(format!("{height:e} m is no height; {NO_HEIGHT}"));
         }
         let scale = [self.spacing_m, self.black_m, self.white_m];
         match self.format()? {
@@ -89,11 +101,16 @@ impl HeightMap {
 
     fn raster(&self, bytes: &[u8]) -> Result<Raster, String> {
         self.check()?;
-        match (self.format()?, self.scale()) {
+        let raster = match (self.format()?, self.scale()) {
             (Format::AsciiGrid, _) => ascii_grid::read(bytes),
             (Format::GeoTiff, _) => geotiff::read(bytes),
             (Format::Png, Some(scale)) => png::read(bytes, scale),
             (Format::Png, None) => Err("a PNG needs its scale".to_owned()),
+        }?;
+        // No sample is no height, but an infinite one is, and a wrong one.
+        match raster.height_m.iter().find(|height| height.abs() > HEIGHT_MAX_M) {
+            Some(height) => Err(format!("a height of {height:e} m; {NO_HEIGHT}")),
+            None => Ok(raster),
         }
     }
 
@@ -202,6 +219,19 @@ mod tests {
         assert!((filled.height_m(2.0, -2.0) + 2.0).abs() < 1e-6);
         let astray = HeightMap { start_m: Some([99.0, 201.0]), ..map() };
         assert!(lay(&astray, NORTH).unwrap_err().contains("covers 100 to 104 east"));
+    }
+
+    #[test]
+    fn what_no_ground_is_high_is_refused() {
+        for level_m in [1e12, -1e30, 1e300] {
+            let error = HeightMap { level_m: Some(level_m), ..map() }.check().unwrap_err();
+            assert!(error.contains("is no height"), "{error}");
+        }
+        for wrong in ["1e39", "-9999.5", "1e300"] {
+            let grid = GRID.replace("54 54 54", &format!("54 {wrong} 54"));
+            let error = map().raster(grid.as_bytes()).unwrap_err();
+            assert!(error.starts_with("a height of ") && error.contains("no-data"), "{error}");
+        }
     }
 
     #[test]

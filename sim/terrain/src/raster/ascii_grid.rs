@@ -43,6 +43,9 @@ impl Header {
     }
 }
 
+/// What is no height where a header does not say (Esri ASCII raster format).
+const NODATA: f64 = -9999.0;
+
 /// Reads a grid.
 ///
 /// # Errors
@@ -105,7 +108,7 @@ fn heights<'a>(
             if height_m.len() == promised {
                 return Err(format!("line {number}: more than the {promised} heights promised"));
             }
-            height_m.push(sample(height, header.nodata));
+            height_m.push(sample(height, Some(header.nodata.unwrap_or(NODATA))));
         }
     }
     if height_m.len() < promised {
@@ -147,6 +150,8 @@ mod tests {
         assert_eq!(raster.height_m[3..], [5.0, 6.0, 7.0]);
         let centre = SMALL.replace("xllcorner", "XLLCENTER").replace("yllcorner", "yllcenter");
         assert_eq!(read(centre.as_bytes()).unwrap().first_m, [100.0, 200.0]);
+        let silent = SMALL.replace("NODATA_value -9999\n", "");
+        assert!(read(silent.as_bytes()).unwrap().height_m[2].is_nan(), "as the format has it");
         // Heights may be broken into lines at will.
         let broken = SMALL.replace("5 6 7\n1 2", "5\n6 7 1\n\n2");
         assert_eq!(read(broken.as_bytes()).unwrap().height_m[3..], [5.0, 6.0, 7.0]);

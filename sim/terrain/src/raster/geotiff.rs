@@ -16,6 +16,8 @@ const RASTER_POINT: u16 = 2;
 const PLAN_UNIT: u16 = 3076;
 const HEIGHT_UNIT: u16 = 4099;
 const METRE: u16 = 9001;
+/// Photometric interpretation of samples that count down from white (TIFF 6.0, page 37).
+const WHITE_IS_ZERO: u32 = 0;
 /// GDAL's own tag for what no other tag holds, in XML.
 const GDAL_METADATA: u16 = 42112;
 
@@ -43,6 +45,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Raster, String> {
         return Err(format!(
             "{colour:?} where one band of heights is wanted; `gdal_translate -b 1`"
         ));
+    }
+    if tiff.get_tag_u32(Tag::PhotometricInterpretation).is_ok_and(|means| means == WHITE_IS_ZERO) {
+        return Err("its samples count down from white, and heights do not; \
+            `gdal_translate -co PHOTOMETRIC=MINISBLACK`"
+            .to_owned());
     }
     let keys = geo_keys(&mut tiff).map_err(say)?;
     check_units(&keys)?;
@@ -219,6 +226,17 @@ mod tests {
         assert!(raster.height_m[2].is_nan());
         let bytes = read(&write::<colortype::Gray8>(&[5, 6, 7, 1, 2, 255], &[], None)).unwrap();
         assert_eq!(bytes.height_m, [1.0, 2.0, 255.0, 5.0, 6.0, 7.0]);
+    }
+
+    #[test]
+    fn samples_that_count_down_from_white_are_refused() {
+        let mut bytes = write::<colortype::Gray8>(&[5, 6, 7, 1, 2, 255], &[], None);
+        // Tag 262, one short, and its value.
+        let photometric = [0x06, 0x01, 3, 0, 1, 0, 0, 0, 1];
+        let at = bytes.windows(9).position(|window| window == photometric).unwrap();
+        bytes[at + 8] = 0;
+        let error = read(&bytes).unwrap_err();
+        assert!(error.contains("PHOTOMETRIC=MINISBLACK"), "{error}");
     }
 
     #[test]

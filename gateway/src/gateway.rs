@@ -119,7 +119,8 @@ impl Gateway {
 
     /// One period of 10 ms: at most one round of frames is added to `out`.
     pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
-        let located = self.locate(now, out);
+        let fresh = self.fresh.take();
+        let located = fresh.as_ref().and_then(|(at, epoch)| self.locate(*at, epoch));
         self.ask(now, located);
         let was = self.kernel.phase();
         let input = self.input();
@@ -139,6 +140,13 @@ impl Gateway {
             Verdict::Block(_) => self.stay_neutral(out),
         };
         self.note(sent);
+        // After the commands: a node's frames leave in the order in which they were queued, and behind
+        // these of low priority a command waited for the whole bus.
+        if let Some((at, epoch)) = fresh {
+            let antenna = self.frame.to_local(epoch.position);
+            let sent = record(&epoch, antenna, now.since(at).as_secs_f64(), out);
+            self.note(sent);
+        }
     }
 
     /// How things stand.
@@ -183,12 +191,9 @@ impl Gateway {
             && matches!(self.order, Order::None)
     }
 
-    /// Handles the newest epoch: records it on the bus, and says where the machine is if it can.
-    fn locate(&mut self, now: SimTime, out: &mut Outbox) -> Option<Located> {
-        let (at, epoch) = self.fresh.take()?;
+    /// Handles the newest epoch, whose last byte came in at `at`: says where the machine is if it can.
+    fn locate(&mut self, at: SimTime, epoch: &Epoch) -> Option<Located> {
         let antenna = self.frame.to_local(epoch.position);
-        let sent = record(&epoch, antenna, now.since(at).as_secs_f64(), out);
-        self.note(sent);
         self.quality = Some(epoch.quality);
         let heading_rad = epoch.heading_rad?;
         if epoch.quality.fix == Fix::None {

@@ -222,6 +222,23 @@ fn a_scripted_step_reaches_the_wire_as_a_ramp_in_steps_of_two_millimetres() {
     assert!(bench.gateway.status().outcome == Outcome::Reached);
 }
 
+/// A node's frames leave in the order in which they were queued: behind a fix's, of low priority, a command
+/// would wait for the whole bus.
+#[test]
+fn commands_leave_before_the_fix_of_their_tick() {
+    let mut bench = armed(goto(25.0, 0.0, 0.0));
+    let mut fixes = 0;
+    for _ in 0..200 {
+        bench.tick();
+        let ids: Vec<_> = bench.sent.frames().iter().map(|frame| frame.id()).collect();
+        if ids.contains(&GnssPosition::ID) {
+            assert_eq!(ids[..2], [ArmTarget::ID, DriveTarget::ID]);
+            fixes += 1;
+        }
+    }
+    assert!(fixes >= 15, "{fixes}");
+}
+
 #[test]
 fn counters_of_the_target_frames_go_on_one_by_one() {
     let mut bench = armed(Box::new(Hold));

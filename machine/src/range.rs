@@ -35,6 +35,8 @@ pub(crate) fn beyond_all_machines(text: &str) -> Option<(String, f64, &'static s
 fn beyond(key: &str, value: &toml::Value) -> Option<(f64, &'static str)> {
     let number = match value {
         toml::Value::Float(x) => *x,
+        #[allow(clippy::cast_precision_loss)] // Nobody writes such integers.
+        toml::Value::Integer(x) => *x as f64,
         toml::Value::Array(list) => return list.iter().find_map(|value| beyond(key, value)),
         _ => return None,
     };
@@ -163,6 +165,7 @@ mod tests {
     fn what_has_no_sign_is_no_less_than_zero() {
         for (from, key) in [
             ("friction = 0.7 ", "wheels.friction"),
+            ("engine_power_w = 150000.0 ", "drive.engine_power_w"),
             ("lock_damping_n_s_m = 8.5e4 ", "hydraulics.lock_damping_n_s_m"),
             ("return_pressure_pa = 5.0e5 ", "hydraulics.return_pressure_pa"),
             ("front_box_m = [3.4,", "frames.front_box_m"),
@@ -176,6 +179,9 @@ mod tests {
                 from.replace("= ", "= -")
             };
             let error = refusal(from, &negative);
+            assert!(error.starts_with(&format!("m.toml: {key} = -")), "{error}");
+            // A whole number is a number too.
+            let error = refusal(from, &negative.replace(".0 ", " "));
             assert!(error.starts_with(&format!("m.toml: {key} = -")), "{error}");
         }
     }

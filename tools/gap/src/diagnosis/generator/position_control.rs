@@ -17,7 +17,7 @@ const HALVINGS: usize = 3;
 ///
 /// A current in whole milliamperes leaves open which opening was meant: what would show as the same
 /// current, cut off or rounded, is no error. Nor does the log say what the PI had summed up before
-/// it began: the sum that fits best is taken.
+/// it began: the sum that fits best is taken. Nor, where a target moves, which of two the PI had in a tick.
 #[must_use]
 pub(super) fn arm_opening_error(
     signals: &Signals,
@@ -31,11 +31,13 @@ pub(super) fn arm_opening_error(
         let from = errors.len();
         let at_work = |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION;
         let to = (from..signals.len).find(|i| !at_work(i)).unwrap_or(signals.len);
+        let target_m = &signals.target_stroke_m[wheel];
+        let mm = |m: f64| (m * 1e3).round();
         let stretch = Stretch {
             error_mm: (from..to)
-                .map(|i| signals.target_stroke_m[wheel][i] - signals.stroke_reading_m[wheel][i])
-                .map(|m| (m * 1e3).round())
+                .map(|i| mm(target_m[i] - signals.stroke_reading_m[wheel][i]))
                 .collect(),
+            moved_mm: (from..to).map(|i| mm(target_m[i] - target_m[i.max(from + 1) - 1])).collect(),
             opening: &signals.opening[wheel][from..to],
         };
         errors.extend(pi.best_errors(&stretch));
@@ -49,6 +51,8 @@ pub(super) fn arm_opening_error(
 struct Stretch<'a> {
     /// Target less reading, both whole millimetres.
     error_mm: Vec<f64>,
+    /// How far the target has moved since the tick before.
+    moved_mm: Vec<f64>,
     opening: &'a [f64],
 }
 
@@ -79,7 +83,11 @@ impl Pi {
 
     fn errors(&self, stretch: &Stretch<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {
         let asked = self.asked(&stretch.error_mm, sum_mm_s);
-        asked.zip(stretch.opening).map(|(asked, opening)| beyond_step(asked, *opening))
+        asked.zip(&stretch.moved_mm).zip(stretch.opening).map(|((asked, moved_mm), opening)| {
+            let before = (asked - self.kp_per_mm * moved_mm).clamp(-self.most, self.most);
+            let likeliest = opening.clamp(before.min(asked), before.max(asked));
+            beyond_step(likeliest, *opening)
+        })
     }
 
     /// The openings asked for, with `sum_mm_s` summed up before.
@@ -116,6 +124,27 @@ mod tests {
         pi.asked(error_mm, sum).map(|asked| (asked / STEP).trunc() * STEP).collect()
     }
 
+    /// A stretch whose target stands.
+    fn standing(error_mm: Vec<f64>, opening: &[f64]) -> Stretch<'_> {
+        Stretch { moved_mm: vec![0.0; error_mm.len()], error_mm, opening }
+    }
+
+    #[test]
+    fn which_of_two_targets_it_had_in_a_tick_is_no_error_and_another_is() {
+        let (pi, moved_mm) = (pi(), vec![2.0; 200]);
+        // The arm lags a target that moves by 2 mm a tick.
+        let now: Vec<f64> = (0..200).map(|i| f64::from(i.min(20)) * 2.0).collect();
+        let of = |behind_mm: f64| -> Vec<f64> { now.iter().map(|mm| mm - behind_mm).collect() };
+        let worst = |behind_mm: f64| {
+            let opening = sent(&pi, &of(behind_mm), 0.0);
+            let stretch =
+                Stretch { error_mm: now.clone(), moved_mm: moved_mm.clone(), opening: &opening };
+            pi.best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()))
+        };
+        assert!(worst(0.0) < 0.2 * STEP && worst(2.0) < STEP, "{} {}", worst(0.0), worst(2.0));
+        assert!(worst(6.0) > 2.0 * STEP, "{}", worst(6.0));
+    }
+
     fn errors_mm() -> Vec<f64> {
         (0..1500).map(|i| (f64::from(i) * 0.01).sin() * 12.0).map(f64::round).collect()
     }
@@ -125,7 +154,7 @@ mod tests {
         for sum in [-100.0, -13.0, 0.0, 61.0] {
             let error_mm = errors_mm();
             let opening = sent(&pi(), &error_mm, sum);
-            let stretch = Stretch { error_mm, opening: &opening };
+            let stretch = standing(error_mm, &opening);
             let worst =
                 pi().best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()));
             assert!(worst < 0.2 * STEP, "{sum}: {worst}");
@@ -136,7 +165,7 @@ mod tests {
     fn another_gain_shows() {
         let error_mm = errors_mm();
         let opening = sent(&pi(), &error_mm, 0.0);
-        let stretch = Stretch { error_mm, opening: &opening };
+        let stretch = standing(error_mm, &opening);
         let louder = Pi { kp_per_mm: 1.5 * pi().kp_per_mm, ..pi() };
         let errors = louder.best_errors(&stretch);
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / 1500.0).sqrt();

@@ -55,3 +55,16 @@ pub enum Outcome {
     /// It can't be done, and why; its demand holds the machine.
     Failed(String),
 }
+
+impl Outcome {
+    /// Its name in reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Endless => "endless",
+            Self::Running => "running",
+            Self::Reached => "reached",
+            Self::Failed(_) => "failed",
+        }
+    }
+}

@@ -48,16 +48,10 @@ pub(crate) fn tell(finished: &Finished) {
 pub(crate) fn json(finished: &Finished) -> Value {
     let Finished { status, lateness, interrupted, seconds, .. } = finished;
     let Status { counts, .. } = status;
-    let outcome = match &status.outcome {
-        Outcome::Endless => "endless",
-        Outcome::Running => "running",
-        Outcome::Reached => "reached",
-        Outcome::Failed(_) => "failed",
-    };
     json!({
         "pass": shortfall(finished).is_none(),
         "reason": shortfall(finished),
-        "outcome": outcome,
+        "outcome": status.outcome.name(),
         "interrupted": interrupted,
         "seconds": seconds,
         "armed_at_s": status.armed_at.map(|at| at.as_secs_f64()),

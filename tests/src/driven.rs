@@ -31,11 +31,9 @@ impl Driven {
     /// From what a gateway says of itself.
     #[must_use]
     pub fn new(status: &Status) -> Self {
-        let (outcome, failed) = match &status.outcome {
-            Outcome::Endless => ("endless", None),
-            Outcome::Running => ("running", None),
-            Outcome::Reached => ("reached", None),
-            Outcome::Failed(why) => ("failed", Some(why.clone())),
+        let failed = match &status.outcome {
+            Outcome::Failed(why) => Some(why.clone()),
+            Outcome::Endless | Outcome::Running | Outcome::Reached => None,
         };
         let unarmed = status.blocked.filter(|_| status.armed_at.is_none());
         let safety_stop = status
@@ -44,7 +42,7 @@ impl Driven {
         Self {
             armed_at_s: status.armed_at.map(|at| at.as_secs_f64()),
             safety_stop,
-            outcome: outcome.to_owned(),
+            outcome: status.outcome.name().to_owned(),
             reason: failed.or_else(|| unarmed.map(|reason| reason.to_string())),
         }
     }

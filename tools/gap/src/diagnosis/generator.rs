@@ -97,7 +97,7 @@ impl Generator {
                 effect.block == Block::Steering && !Self::SteerEcu(1).hears(effect, scope)
             }
             Self::Drive => {
-                (effect.block == Block::Drive && name != "slippery-ground")
+                effect.block == Block::Drive
                     || matches!(name, "payload" | "terrain-slope" | "wheel-speed-scale")
             }
             Self::Stance => {

@@ -10,8 +10,10 @@ pub(super) struct Instant {
     pub(super) sample: usize,
     /// Whether the machine neither gains nor loses speed.
     pub(super) is_calm: bool,
-    /// Whether every pressure is on its sensor's scale.
+    /// Whether the pressures say all that the arms carry.
     pub(super) is_read: bool,
+    /// Whether no brake holds a wheel that its arm, as it swings, wants to roll.
+    pub(super) rolls_freely: bool,
     /// How many times as doubtful as at rest what is said of attitude and weight is.
     pub(super) doubt: f64,
     /// Front and rear joint, rad.

@@ -73,6 +73,8 @@ pub struct Signals {
     pub target_joint_rad: Samples,
     /// Throttle commanded, -1 to 1.
     pub throttle: Samples,
+    /// Parking brake commanded, 0 or 1; empty where not logged.
+    pub brake: Samples,
     /// Pump pressures 1A 1B 2A 2B.
     pub pump_pressure_pa: [Samples; 4],
     /// Roll of the front frame, right side high > 0.
@@ -87,6 +89,7 @@ pub struct Signals {
     /// Made of the above when first asked for.
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
+    scrubs: OnceLock<Vec<[f64; 2]>>,
 }
 
 impl Signals {
@@ -167,6 +170,7 @@ impl Signals {
             }),
             target_joint_rad: sample(Channel::TargetJoint),
             throttle: sample(Channel::Throttle),
+            brake: sample(Channel::Brake),
             pump_pressure_pa: PumpSide::ALL.map(|side| sample(Channel::PumpPressure(side))),
             roll_rad: sample(Channel::Roll),
             pitch_rad: sample(Channel::Pitch),
@@ -174,6 +178,7 @@ impl Signals {
             headings: receiver::headings(series),
             instants: OnceLock::new(),
             antenna_leans_m: OnceLock::new(),
+            scrubs: OnceLock::new(),
         })
     }
 
@@ -186,6 +191,11 @@ impl Signals {
     /// Where the antenna is for the machine's leaning. A machine file says that, and no knob.
     pub(super) fn antenna_leans_m(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
         self.antenna_leans_m.get_or_init(first)
+    }
+
+    /// How the tyres scrub as joints turn. They need of a machine only its axles, joints and radius.
+    pub(super) fn scrubs(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
+        self.scrubs.get_or_init(first)
     }
 
     /// Length of the run, s.

@@ -16,7 +16,7 @@ use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// What is expected of the row of commands less what was seen, mean of arms' and drive's; smaller by as
-/// much as chance is larger than the floor.
+/// much as chance is larger than the floor; `NaN` where nobody sent any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BusErrors {
     /// Share of frames that are missing.
@@ -32,6 +32,8 @@ pub(super) struct BusErrors {
 const WINDOW_S: f64 = 1.0;
 /// Period of the two commands, s (the wire contract).
 const PERIOD_S: f64 = 0.01;
+/// Within this time of a window's beginning and end commands are taken to fill it, s.
+const BEGINS_S: f64 = 0.03;
 /// Windows of the row on which an expectation stands: chance leaves 0.2 % to a loss of a tenth.
 const ROW: u32 = 200;
 
@@ -42,18 +44,32 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
     let samples = (WINDOW_S / DT_S) as usize;
     let mut errors = BusErrors::default();
     for window in 0..signals.len / samples {
+        let fill = |to: &mut Samples, value: f64| to.extend(std::iter::repeat_n(value, samples));
+        if !signals.command_times_s.iter().all(|times| spans(times, window as f64)) {
+            for all in [&mut errors.missing, &mut errors.out_of_place, &mut errors.uneven] {
+                fill(all, f64::NAN);
+            }
+            continue;
+        }
         let seen =
             signals.command_times_s.each_ref().map(|times| Row::of_window(times, window as f64));
         let less = |of: fn(&Row) -> f64, signal: Signal| {
             let chance = of(&expected.chance) / signal.floor().sigma;
             (of(&expected.mean) - (of(&seen[0]) + of(&seen[1])) / 2.0) / chance.hypot(1.0)
         };
-        let fill = |to: &mut Samples, value: f64| to.extend(std::iter::repeat_n(value, samples));
         fill(&mut errors.missing, less(|row| row.missing, Signal::BusMissing));
         fill(&mut errors.out_of_place, less(|row| row.out_of_place, Signal::BusPlace));
         fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven));
     }
     errors
+}
+
+/// Whether somebody sent commands from the beginning of a window to its end: before the first command and
+/// after the last none is missing.
+fn spans(times_s: &[f64], window: f64) -> bool {
+    let (Some(first), Some(last)) = (times_s.first(), times_s.last()) else { return false };
+    let [from, to] = [window, window + 1.0].map(|at| at * WINDOW_S);
+    *first <= from + BEGINS_S && *last >= to - BEGINS_S
 }
 
 /// What a row of one window looks like under an effect.

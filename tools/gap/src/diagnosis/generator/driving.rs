@@ -9,6 +9,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 use xt28_sim::{Drive, DriveInput, Effects, Terrain};
 
+use super::scrub::scrub_drag_nm;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the block did less what was measured.
@@ -103,6 +104,7 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
     let drag_nm = (w.rolling_resistance + added) * weight_nm;
     let nm_per_pa = w.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     let end = signals.len.saturating_sub(1);
+    let scrub_nm = scrub_drag_nm(signals, machine, effects);
     let mut error = 0.0;
     let errors: Samples = (0..signals.len)
         .map(|i| {
@@ -117,6 +119,7 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
                 let apart = inertia_kg_m2 * speeds_up
                     + drag_nm * rolls
                     + weight_nm * climbs(signals, machine, effects, i)
+                    + scrub_nm[i]
                     - nm_per_pa * (first + second) / 2.0;
                 // A wheel at rest is held by anything up to its rolling resistance.
                 let holds_nm = drag_nm.abs() * (1.0 - rolls.abs());

@@ -18,6 +18,7 @@ const HALVINGS: usize = 3;
 /// A current in whole milliamperes leaves open which opening was meant: what would show as the same
 /// current, cut off or rounded, is no error. Nor does the log say what the PI had summed up before
 /// it began: the sum that fits best is taken. Nor, where a target moves, which of two the PI had in a tick.
+/// Nor whether the ECU keeps a valve shut that would push its arm further into the end of its stroke.
 #[must_use]
 pub(super) fn arm_opening_error(
     signals: &Signals,
@@ -37,6 +38,7 @@ pub(super) fn arm_opening_error(
             error_mm: (from..to)
                 .map(|i| mm(target_m[i] - signals.stroke_reading_m[wheel][i]))
                 .collect(),
+            end: (from..to).map(|i| end_of(machine, signals.stroke_reading_m[wheel][i])).collect(),
             moved_mm: (from..to).map(|i| mm(target_m[i] - target_m[i.max(from + 1) - 1])).collect(),
             opening: &signals.opening[wheel][from..to],
         };
@@ -51,6 +53,8 @@ pub(super) fn arm_opening_error(
 struct Stretch<'a> {
     /// Target less reading, both whole millimetres.
     error_mm: Vec<f64>,
+    /// Which way the end of the stroke lies that the arm stands at, + out, or 0.
+    end: Vec<f64>,
     /// How far the target has moved since the tick before.
     moved_mm: Vec<f64>,
     opening: &'a [f64],
@@ -83,10 +87,12 @@ impl Pi {
 
     fn errors(&self, stretch: &Stretch<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {
         let asked = self.asked(&stretch.error_mm, sum_mm_s);
-        asked.zip(&stretch.moved_mm).zip(stretch.opening).map(|((asked, moved_mm), opening)| {
+        let known = stretch.moved_mm.iter().zip(&stretch.end).zip(stretch.opening);
+        asked.zip(known).map(|(asked, ((moved_mm, end), opening))| {
             let before = (asked - self.kp_per_mm * moved_mm).clamp(-self.most, self.most);
-            let likeliest = opening.clamp(before.min(asked), before.max(asked));
-            beyond_step(likeliest, *opening)
+            let shut = if asked * end > 0.0 { 0.0 } else { asked };
+            let [least, most] = [before.min(asked).min(shut), before.max(asked).max(shut)];
+            beyond_step(opening.clamp(least, most), *opening)
         })
     }
 
@@ -97,6 +103,17 @@ impl Pi {
             let asked = self.kp_per_mm * error_mm + self.ki_per_mm_s * sum_mm_s;
             asked.clamp(-self.most, self.most)
         })
+    }
+}
+
+/// Which way the end of the stroke lies that a reading is at, + out; 0 between the ends.
+pub(super) fn end_of(machine: &Machine, reading_m: f64) -> f64 {
+    if reading_m <= 0.0 {
+        -1.0
+    } else if reading_m >= machine.arms.stroke_max_m {
+        1.0
+    } else {
+        0.0
     }
 }
 
@@ -126,7 +143,8 @@ mod tests {
 
     /// A stretch whose target stands.
     fn standing(error_mm: Vec<f64>, opening: &[f64]) -> Stretch<'_> {
-        Stretch { moved_mm: vec![0.0; error_mm.len()], error_mm, opening }
+        let still = vec![0.0; error_mm.len()];
+        Stretch { end: still.clone(), moved_mm: still, error_mm, opening }
     }
 
     #[test]
@@ -137,12 +155,30 @@ mod tests {
         let of = |behind_mm: f64| -> Vec<f64> { now.iter().map(|mm| mm - behind_mm).collect() };
         let worst = |behind_mm: f64| {
             let opening = sent(&pi, &of(behind_mm), 0.0);
-            let stretch =
-                Stretch { error_mm: now.clone(), moved_mm: moved_mm.clone(), opening: &opening };
+            let stretch = Stretch { moved_mm: moved_mm.clone(), ..standing(now.clone(), &opening) };
             pi.best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()))
         };
         assert!(worst(0.0) < 0.2 * STEP && worst(2.0) < STEP, "{} {}", worst(0.0), worst(2.0));
         assert!(worst(6.0) > 2.0 * STEP, "{}", worst(6.0));
+    }
+
+    #[test]
+    fn a_valve_kept_shut_at_the_end_of_the_stroke_is_no_error_and_one_kept_shut_before_it_is() {
+        // Target 0 after a way out: the PI still asks to go in.
+        let pi = pi();
+        let worst = |end: f64| {
+            let stretch = Stretch { end: vec![end; 200], ..standing(vec![-3.0; 200], &[0.0; 200]) };
+            pi.errors(&stretch, -100.0).fold(0.0, |w: f64, e| w.max(e.abs()))
+        };
+        assert_eq!(worst(-1.0), 0.0);
+        assert!(
+            worst(0.0) > 2.0 * STEP && worst(1.0) > 2.0 * STEP,
+            "{} {}",
+            worst(0.0),
+            worst(1.0)
+        );
+        let machine = Machine::xt28();
+        assert_eq!([0.0, 0.001, 0.25, 0.5].map(|m| end_of(&machine, m)), [-1.0, 0.0, 0.0, 1.0]);
     }
 
     fn errors_mm() -> Vec<f64> {

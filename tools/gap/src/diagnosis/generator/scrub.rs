@@ -5,7 +5,7 @@
 //! them is one number, along the pattern of side forces that is balanced in itself. Tyres answer it
 //! as bristles do: they deflect until they slide, and let go as the wheels roll on.
 
-use xt28_machine::{Machine, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::Effects;
 
 use super::axles::Axles;
@@ -28,22 +28,52 @@ pub(super) fn scrub_nm(
     effects: &Effects,
     joint: usize,
 ) -> Samples {
+    let most_nm = most_nm(machine, effects)[joint];
+    scrubs(signals, machine).iter().map(|[deflection, _]| most_nm * deflection).collect()
+}
+
+/// Torque that each wheel needs against the same tyres, Nm, forward > 0.
+///
+/// The forces of the pattern do no work but along the slip that is left of the axles: what a joint, as it
+/// straightens, puts into the ground beyond that drives the machine on, and its pumps need to do less.
+#[must_use]
+pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+    let axles = Axles::new(machine);
+    let lever_m = [[1.0, 0.0], [0.0, 1.0]].map(|rate| axles.misfit_m_s([0.0; 2], rate, 0.0));
+    let most_nm = most_nm(machine, effects);
+    let most_n = 0.5 * (most_nm[0] / lever_m[0] + most_nm[1] / lever_m[1]);
+    let wheel_nm = most_n * machine.wheels.radius_m / 6.0;
+    scrubs(signals, machine)
+        .iter()
+        .map(|[deflection, ahead]| wheel_nm * deflection * ahead)
+        .collect()
+}
+
+/// Torque against each joint while the tyres slide, Nm.
+fn most_nm(machine: &Machine, effects: &Effects) -> [f64; 2] {
     let grip: f64 =
         Wheel::ALL.iter().map(|w| effects.wheels[*w].slippery_ground.friction_factor).sum();
-    let axles = Axles::new(machine);
-    let axle_n = machine.mass_kg() * xt28_machine::GRAVITY_M_S2 / 3.0;
-    let most_nm =
-        SLIDES_AT[joint] * machine.wheels.friction * grip / 6.0 * axle_n * axles.lever_m();
-    let mut deflection_m = 0.0_f64;
-    (0..signals.len)
-        .map(|i| {
+    let axle_n = machine.mass_kg() * GRAVITY_M_S2 / 3.0;
+    let side_n = machine.wheels.friction * grip / 6.0 * axle_n;
+    SLIDES_AT.map(|share| share * side_n * Axles::new(machine).lever_m())
+}
+
+/// Deflection along the pattern as a share of the one at which the tyres slide, -1 to 1, and slip along
+/// the pattern for each metre that the machine goes ahead with joints that stand; sample by sample.
+fn scrubs<'a>(signals: &'a Signals, machine: &Machine) -> &'a [[f64; 2]] {
+    let first = || {
+        let axles = Axles::new(machine);
+        let mut deflection_m = 0.0_f64;
+        let step = |i: usize| {
             let angle = [0, 1].map(|j| signals.joint_rad[j][i]);
             let rate = [0, 1].map(|j| signals.joint_rate_rad_s[j][i]);
             let ahead = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
             let slip = axles.misfit_m_s(angle, rate, ahead);
             deflection_m += DT_S * (slip - ahead.abs() / RELAXATION_M * deflection_m);
             deflection_m = deflection_m.clamp(-SLIDES_M, SLIDES_M);
-            most_nm * deflection_m / SLIDES_M
-        })
-        .collect()
+            [deflection_m / SLIDES_M, axles.misfit_m_s(angle, [0.0; 2], 1.0)]
+        };
+        (0..signals.len).map(step).collect()
+    };
+    signals.scrubs(first)
 }

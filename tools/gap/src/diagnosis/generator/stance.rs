@@ -2,6 +2,7 @@
 //! and whether every wheel either touches the ground or carries nothing.
 
 mod carried;
+mod filter;
 mod holds;
 mod instants;
 mod layout;
@@ -49,8 +50,8 @@ struct Error {
 /// between wheel and arm or between wheel and ground moves it by 15 mm, and plants differ in that.
 const ROLLING_DOUBT: f64 = 2.0;
 
-/// What nothing can be said of: the ground is not level, a pressure is off its scale, the machine is on
-/// fewer than three wheels.
+/// What nothing can be said of: the ground is not level, pressures do not say it, brakes hold wheels
+/// against their arms, the machine is on fewer than three wheels.
 const UNKNOWN: Error = Error {
     attitude_rad: [f64::NAN; 2],
     weight: [f64::NAN; 3],
@@ -65,7 +66,7 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     let holds = Holds::new(s, machine, effects, &parts);
     let flat = matches!(s.terrain, Terrain::Flat);
     let judge = |instant: &Instant| {
-        if !flat || !instant.is_read {
+        if !flat || !instant.is_read || !instant.rolls_freely {
             return UNKNOWN;
         }
         let held = holds.as_ref().map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));

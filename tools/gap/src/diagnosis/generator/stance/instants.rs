@@ -2,9 +2,11 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
+use super::filter::felt_rad;
 use super::motion::{Motion, lagged};
 use crate::diagnosis::generator::driving::PRESSURE_AT_TORQUE_MAX_PA;
 use crate::diagnosis::generator::loads::is_off_scale;
+use crate::diagnosis::generator::position_control::end_of;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -14,6 +16,10 @@ pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
 const STRIDE: usize = 50;
 /// Speed over which rolling resistance fades in, rad/s: 5 cm/s at the rim (assumed).
 const FADES_RAD_S: f64 = 0.07;
+/// Stroke by which arms press wheels that a brake holds against one another: no log says how hard.
+const SWINGS_M: f64 = 0.0003;
+/// Samples until wheels that a brake let go have rolled to where nothing presses them.
+const ROLLS_BACK: usize = 100;
 /// Stroke rate at which an instant is twice as doubtful as one at rest, m/s, and how long that lasts, s.
 const DOUBT_M_S: f64 = 0.02;
 const DOUBT_S: f64 = 1.0;
@@ -26,17 +32,18 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
         lagged(reading.iter().zip(felt).map(|(r, f)| r - f), PRESSURE_FILTER_S)
     };
     let joint = [late(&s.joint_rad[0]), late(&s.joint_rad[1])];
-    let attitude =
-        [still(&s.roll_rad, &motion.felt_rad[0]), still(&s.pitch_rad, &motion.felt_rad[1])];
+    let felt = felt_rad(s, machine, &motion);
+    let attitude = [still(&s.roll_rad, &felt[0]), still(&s.pitch_rad, &felt[1])];
     let acceleration = [late(&motion.left_m_s2), late(&motion.ahead_m_s2)];
-    let (heading, doubt) = (headings(s, &motion), doubts(s));
+    let (heading, doubt, held) = (headings(s, &motion), doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
     (STRIDE / 2..s.len)
         .step_by(STRIDE)
         .map(|i| Instant {
             sample: i,
             is_calm: motion.is_calm[i],
-            is_read: Wheel::ALL.into_iter().all(|w| !is_off_scale(s, w, i)),
+            is_read: Wheel::ALL.into_iter().all(|w| is_read(s, machine, w, i)),
+            rolls_freely: !held[i],
             doubt: doubt[i],
             joint_rad: [joint[0][i], joint[1][i]],
             attitude_rad: [attitude[0][i], attitude[1][i]],
@@ -74,6 +81,32 @@ pub(super) fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: Wheel) -> Sa
     let (back, forward) = (&s.pump_pressure_pa[back], &s.pump_pressure_pa[forward]);
     let full = machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
+}
+
+/// Whether the pressures of a cylinder say all that its arm carries: they are on their scale, and no end
+/// stop carries with them.
+fn is_read(s: &Signals, machine: &Machine, wheel: Wheel, i: usize) -> bool {
+    !is_off_scale(s, wheel, i) && end_of(machine, s.stroke_reading_m[wheel][i]) == 0.0
+}
+
+/// Where the parking brake holds wheels that arms have swung since it was put on, or did so just now.
+fn held_against_arms(s: &Signals) -> Vec<bool> {
+    let (mut put_on_m, mut since) = (None, ROLLS_BACK);
+    let step = |i: usize| {
+        let stroke_m = PerWheel::from_fn(|w| s.smooth_stroke_m[w][i]);
+        if s.brake.get(i).is_some_and(|on| *on != 0.0) {
+            let from_m: PerWheel<f64> = *put_on_m.get_or_insert(stroke_m);
+            let swings = |w: Wheel| (stroke_m[w] - from_m[w]).abs() > SWINGS_M;
+            if Wheel::ALL.into_iter().any(swings) {
+                since = 0;
+            }
+        } else {
+            put_on_m = None;
+            since += 1;
+        }
+        since < ROLLS_BACK
+    };
+    (0..s.len).map(step).collect()
 }
 
 /// How many times as doubtful as at rest each sample is: arms that move shake the machine.

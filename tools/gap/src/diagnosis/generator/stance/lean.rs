@@ -18,16 +18,24 @@ pub(in crate::diagnosis::generator) fn antenna_leans_m(
     s: &Signals,
     machine: &Machine,
 ) -> Vec<[f64; 2]> {
+    let lean_m = |plane: Plane| {
+        // Nose up takes it back, right side high to the left, by its height over the ground.
+        let high_m = machine.sensors.gnss_antenna_m[2] - plane.z_m;
+        [high_m * plane.slope_x, high_m * plane.slope_y]
+    };
+    planes(s, machine).into_iter().map(lean_m).collect()
+}
+
+/// The plane that the wheels stand on, sample by sample, as a machine without effects would say it; as
+/// just before where fewer than three wheels stand.
+#[must_use]
+pub(super) fn planes(s: &Signals, machine: &Machine) -> Vec<Plane> {
     let parts = Parts::new(machine, &Effects::default());
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
-    let mut lean_m = [0.0; 2];
+    let mut plane = Plane::default();
     let step = |i: usize| {
-        if let Some(plane) = plane_at(s, machine, &parts, &own_n, i) {
-            // Nose up takes it back, right side high to the left, by its height over the ground.
-            let high_m = machine.sensors.gnss_antenna_m[2] - plane.z_m;
-            lean_m = [high_m * plane.slope_x, high_m * plane.slope_y];
-        }
-        lean_m
+        plane = plane_at(s, machine, &parts, &own_n, i).unwrap_or(plane);
+        plane
     };
     (0..s.len).map(step).collect()
 }

@@ -1,14 +1,11 @@
-//! How the machine moves while it stands on its wheels, and what its inertial unit makes of that.
+//! How the machine moves while it stands on its wheels.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 use xt28_sim::{Effects, Parts};
 
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
-/// Time constants of the firmware's complementary filter, s: 0.995 and 0.99 a tick (facts 5).
-const ROLL_FILTER_S: f64 = 2.0;
-const PITCH_FILTER_S: f64 = 1.0;
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
 const HALF_SPAN: usize = 10;
 /// Acceleration from which a machine is said to change its speed, m/s².
@@ -26,8 +23,6 @@ pub(super) struct Motion {
     pub(super) ahead_m_s2: Samples,
     /// Acceleration to the left in a bend, m/s².
     pub(super) left_m_s2: Samples,
-    /// Roll and pitch that the filter reads because of them, rad.
-    pub(super) felt_rad: [Samples; 2],
     /// Yaw rate of the front frame, left > 0, rad/s.
     pub(super) turn_rad_s: Samples,
     /// Whether the machine neither gains nor loses speed, nor did so just now.
@@ -41,18 +36,13 @@ impl Motion {
         let ahead_m_s2 = slope(&speed);
         let turn_rad_s = turn_rates(s, machine, &speed);
         let left_m_s2: Samples = speed.iter().zip(&turn_rad_s).map(|(v, r)| v * r).collect();
-        // Ahead tips the reading nose up, to the left tips it left side high.
-        let felt_rad = [
-            lagged(left_m_s2.iter().map(|a| -a / GRAVITY_M_S2), ROLL_FILTER_S),
-            lagged(ahead_m_s2.iter().map(|a| a / GRAVITY_M_S2), PITCH_FILTER_S),
-        ];
         let mut rocking = 0;
         let is_calm = ahead_m_s2.iter().map(|a| {
             rocking = if a.abs() > CALM_M_S2 { ROCKING } else { rocking.saturating_sub(1) };
             rocking == 0
         });
         let is_calm = is_calm.collect();
-        Self { ahead_m_s2, left_m_s2, felt_rad, turn_rad_s, is_calm }
+        Self { ahead_m_s2, left_m_s2, turn_rad_s, is_calm }
     }
 }
 

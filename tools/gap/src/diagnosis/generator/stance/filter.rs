@@ -1,0 +1,147 @@
+//! What the ECU's attitude filter makes of a machine that speeds up, bends and leans.
+//!
+//! The firmware's filter keeps whole thousandths of a degree and cuts off, so that it stops up to 0.2 deg
+//! (roll) or 0.1 deg (pitch) short of what the accelerometer says (facts 5); other ECUs keep fractions.
+//! No log says which it comes from. Its readings do: both filters are driven with what strokes and
+//! wheels say, and the one that cuts off is taken where its readings lie much nearer.
+
+use xt28_machine::{GRAVITY_M_S2, Machine};
+
+use super::lean::planes;
+use super::motion::Motion;
+use crate::diagnosis::signals::{Samples, Signals};
+
+/// Share of the turned angle that the filter keeps a tick: 2 s for roll, 1 s for pitch (facts 5).
+const KEEP: [f64; 2] = [0.995, 0.99];
+/// Unit in which the firmware's filter keeps angles, rad.
+const UNIT_RAD: f64 = 1.0e-3 * core::f64::consts::PI / 180.0;
+/// The filter that cuts off is taken where it leaves less than this share of what the other leaves: both
+/// leave the errors of strokes, and a sound filter must not be traded for a little of them.
+const MUCH_NEARER: f64 = 0.5;
+
+/// Roll and pitch that the filter reads beside the lean of the front frame, rad.
+#[must_use]
+pub(super) fn felt_rad(s: &Signals, machine: &Machine, motion: &Motion) -> [Samples; 2] {
+    let planes = planes(s, machine);
+    // Ahead tips the reading nose up, to the left tips it left side high.
+    let roll = Felt {
+        lean_rad: planes.iter().map(|plane| plane.slope_y).collect(),
+        tip_rad: motion.left_m_s2.iter().map(|a| -a / GRAVITY_M_S2).collect(),
+        keep: KEEP[0],
+    };
+    let pitch = Felt {
+        lean_rad: planes.iter().map(|plane| -plane.slope_x).collect(),
+        tip_rad: motion.ahead_m_s2.iter().map(|a| a / GRAVITY_M_S2).collect(),
+        keep: KEEP[1],
+    };
+    [roll.beside_lean_rad(&s.roll_rad), pitch.beside_lean_rad(&s.pitch_rad)]
+}
+
+/// One angle: what the gyroscope and the accelerometer feel of it.
+struct Felt {
+    /// Lean of the front frame, rad.
+    lean_rad: Samples,
+    /// What the accelerometer takes for a lean beside it, rad.
+    tip_rad: Samples,
+    keep: f64,
+}
+
+impl Felt {
+    /// What a filter reads beside the lean, by the one that `reading` speaks for.
+    fn beside_lean_rad(&self, reading: &Samples) -> Samples {
+        let whole = self.filtered(0.0, |angle| angle);
+        let offset_rad = median(reading.iter().zip(&whole).map(|(read, angle)| read - angle));
+        let cut = self.filtered(offset_rad, |angle| (angle / UNIT_RAD).trunc() * UNIT_RAD);
+        let cut: Samples = cut.iter().map(|angle| angle - offset_rad).collect();
+        let is_cut = left(reading, &cut) < MUCH_NEARER * left(reading, &whole);
+        let filtered = if is_cut { cut } else { whole };
+        filtered.iter().zip(&self.lean_rad).map(|(angle, lean)| angle - lean).collect()
+    }
+
+    /// Readings of a filter that `keeps` so much of an angle, on a unit mounted `offset_rad` off.
+    fn filtered(&self, offset_rad: f64, keeps: impl Fn(f64) -> f64) -> Samples {
+        let mut last_rad = self.lean_rad.first().map_or(0.0, |lean| lean + offset_rad);
+        let mut angle_rad = last_rad + self.tip_rad.first().copied().unwrap_or_default();
+        let step = |(lean, tip): (&f64, &f64)| {
+            let stands_rad = lean + offset_rad;
+            let turned_rad = stands_rad - last_rad;
+            last_rad = stands_rad;
+            let leans_rad = stands_rad + tip;
+            angle_rad = keeps(self.keep * (angle_rad + turned_rad) + (1.0 - self.keep) * leans_rad);
+            angle_rad
+        };
+        self.lean_rad.iter().zip(&self.tip_rad).map(step).collect()
+    }
+}
+
+/// Sum of the squares of what `filtered` leaves of a reading about its middle.
+fn left(reading: &Samples, filtered: &Samples) -> f64 {
+    let apart = || reading.iter().zip(filtered).map(|(read, angle)| read - angle);
+    let middle = median(apart());
+    apart().map(|error| (error - middle).powi(2)).sum()
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Samples = values.collect();
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return 0.0;
+    }
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bend of eight seconds, felt as a lean of 0.7 deg, of a machine that leans by `lean_rad`.
+    fn bend(lean_rad: f64) -> Felt {
+        let tip = |i: usize| if (300..1100).contains(&i) { -0.7_f64.to_radians() } else { 0.0 };
+        Felt {
+            lean_rad: vec![lean_rad; 2000],
+            tip_rad: (0..2000).map(tip).collect(),
+            keep: KEEP[0],
+        }
+    }
+
+    /// What a gateway reads: hundredths of a degree.
+    fn read(angles: Samples) -> Samples {
+        let unit = 0.01_f64.to_radians();
+        angles.into_iter().map(|angle| (angle / unit).round() * unit).collect()
+    }
+
+    #[test]
+    fn each_filter_is_known_by_its_readings() {
+        for offset_rad in [0.0, 0.01, -0.004] {
+            let felt = bend(0.002);
+            for cuts in [false, true] {
+                let keeps = |angle: f64| {
+                    if cuts { (angle / UNIT_RAD).trunc() * UNIT_RAD } else { angle }
+                };
+                let reading = read(felt.filtered(offset_rad, keeps));
+                let beside = felt.beside_lean_rad(&reading);
+                let apart = (0..2000)
+                    .map(|i| (reading[i] - beside[i] - felt.lean_rad[i] - offset_rad).abs())
+                    .fold(0.0, f64::max);
+                assert!(
+                    apart < 0.1_f64.to_radians(),
+                    "{cuts} {offset_rad}: {}",
+                    apart.to_degrees()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_filter_that_cuts_off_stops_short() {
+        let felt = bend(0.0);
+        let reading = felt.filtered(0.0, |angle| (angle / UNIT_RAD).trunc() * UNIT_RAD);
+        assert!((reading[1099].to_degrees() + 0.5).abs() < 0.01, "{}", reading[1099].to_degrees());
+    }
+
+    #[test]
+    fn a_log_without_samples_feels_nothing() {
+        let felt = Felt { lean_rad: vec![], tip_rad: vec![], keep: KEEP[0] };
+        assert!(felt.beside_lean_rad(&vec![]).is_empty());
+    }
+}

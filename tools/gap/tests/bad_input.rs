@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use made_up::{series, signals, standing, swinging};
 use xt28_gap::diagnosis::{not_testable, swapped_wheels};
 use xt28_gap::{Channel, Series};
-use xt28_machine::Wheel;
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::CATALOGUE;
 
 fn lacks(all: &BTreeMap<Channel, Series>, effect: &str) -> Option<(String, String)> {
@@ -105,4 +105,26 @@ fn a_fault_of_an_arm_is_no_swap() {
         all.insert(Channel::Stroke(Wheel::Fr), series(|t| 0.17 + fault(t)));
         assert_eq!(swapped_wheels(&signals(&all)), None);
     }
+}
+
+/// The ECU makes the load of the pressures, so that they agree whatever is wrong with the machine.
+#[test]
+fn pressures_of_another_wheel_are_found() {
+    let arms = Machine::xt28().arms;
+    const PHASES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+    let load_n = |w: Wheel, t: f64| 3.0e4 + 8.0e3 * (0.3 * t + PHASES[w.index()]).sin();
+    let mut all = swinging();
+    for w in Wheel::ALL {
+        all.insert(Channel::CylinderLoad(w), series(|t| load_n(w, t)));
+        all.insert(Channel::RodPressure(w), series(|_| 1.0e6));
+        let bore = |t| (load_n(w, t) + 1.0e6 * arms.area_rod_m2) / arms.area_bore_m2;
+        all.insert(Channel::BorePressure(w), series(bore));
+    }
+    assert_eq!(swapped_wheels(&signals(&all)), None);
+    let [right, left] = [Wheel::Fr, Wheel::Fl].map(Channel::BorePressure);
+    let (of_right, of_left) = (all[&right].clone(), all[&left].clone());
+    (all.insert(right, of_left), all.insert(left, of_right));
+    let swap = swapped_wheels(&signals(&all)).expect("they are swapped");
+    assert_eq!(swap.between, ["pressures", "load"]);
+    assert_eq!(swap.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
 }

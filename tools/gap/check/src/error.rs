@@ -46,6 +46,12 @@ pub enum CheckError {
         /// Its `about.toml`.
         path: PathBuf,
     },
+    /// A case has no logs.
+    #[error("{path}: lists no run; add a [[run]] for each log of the case")]
+    NoRuns {
+        /// Its `about.toml`.
+        path: PathBuf,
+    },
     /// The answers are not those that were sealed.
     #[error(
         "the seal is broken: the answers are not those sealed before the diagnosis as {seal}; check again and leave them alone"

@@ -103,7 +103,8 @@ impl Report {
         }
         writeln!(
             to,
-            "value [95 % interval] cases; intervals are Wilson's for shares, a bootstrap for the rest\n"
+            "value [95 % interval] cases (of calibration: statements; of intervals: numbers); intervals are Wilson's \
+             for shares, a bootstrap over cases for the rest\n"
         )?;
         self.write_reliability(to)?;
         self.write_wrong(to)?;

@@ -28,9 +28,9 @@ pub type Scores = Vec<(&'static str, Score)>;
 pub fn scores(cases: &[(&Truth, &Reply)]) -> Scores {
     let nameable: Vec<_> = cases.iter().filter(|(truth, _)| truth.is_nameable()).collect();
     let of_kind = |kind| cases.iter().filter(move |(truth, _)| truth.kind == kind);
-    let all: Vec<Statement> = cases.iter().flat_map(|(t, r)| statements(t, r)).collect();
-    let wheels: Vec<Statement> =
-        nameable.iter().filter_map(|(t, r)| scope_statement(t, r)).collect();
+    let all: Vec<Vec<Statement>> = cases.iter().map(|(t, r)| statements(t, r)).collect();
+    let wheels: Vec<Vec<Statement>> =
+        nameable.iter().map(|(t, r)| scope_statement(t, r).into_iter().collect()).collect();
     vec![
         ("top-1", Score::share(nameable.iter().map(|(t, r)| first(t, r, 1)))),
         (
@@ -71,14 +71,8 @@ pub fn scores(cases: &[(&Truth, &Reply)]) -> Scores {
             "pairs, both in the first two",
             Score::share(of_kind(Kind::Pair).map(|(t, r)| both(t, r, false))),
         ),
-        (
-            "calibration error",
-            if all.is_empty() { Score::unsaid() } else { Score::of(&all, calibration_error) },
-        ),
-        (
-            "calibration error of wheels",
-            if wheels.is_empty() { Score::unsaid() } else { Score::of(&wheels, calibration_error) },
-        ),
+        ("calibration error", Score::raised(&all, calibration_error)),
+        ("calibration error of wheels", Score::raised(&wheels, calibration_error)),
     ]
 }
 

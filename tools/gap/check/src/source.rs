@@ -8,7 +8,7 @@ use flate2::bufread::MultiGzDecoder;
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use xt28_gap::diagnosis::FieldRun;
-use xt28_gap::{About, Decoder, FieldLog, GapError, Mapping};
+use xt28_gap::{About, Decoder, FieldLog, GapError, Known, Mapping, RunSet};
 use xt28_gap_plants::{Case, Kind};
 
 use crate::CheckError;
@@ -156,11 +156,14 @@ fn runs_in(folder: &Path) -> Result<Vec<FieldRun>, CheckError> {
     let about = About::load(&path)?;
     let dbc = about.dbc.as_ref().ok_or_else(|| CheckError::NoDatabase { path: path.clone() })?;
     let decoder = Decoder::load(&folder.join(dbc), &Mapping::default())?;
-    let load = |listed: &xt28_gap::Run| {
-        let path = folder.join(&listed.file);
-        run(&about, &path, FieldLog::load(&path, &decoder, false)?)
-    };
-    about.run.iter().map(load).collect()
+    let logs: Vec<PathBuf> = about.run.iter().map(|listed| folder.join(&listed.file)).collect();
+    if logs.is_empty() {
+        return Err(CheckError::NoRuns { path });
+    }
+    let known = Known { about: Some(&path), terrain: None };
+    let runs = RunSet::load(&logs, &decoder, known, false)?;
+    let choice = runs.choose(&[], &[])?;
+    Ok(runs.into_field_runs(&choice, false)?)
 }
 
 fn run(about: &About, path: &Path, log: FieldLog) -> Result<FieldRun, CheckError> {

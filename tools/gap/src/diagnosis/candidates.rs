@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
-use xt28_sim::effects::Effect;
+use xt28_sim::effects::{Effect, Parameter};
 
 use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left};
@@ -25,6 +25,9 @@ const OPEN: [f64; 2] = [4.0, 0.03];
 const SUITED_MIN: f64 = 12.0;
 /// What a beginning must gain beyond the freedom to choose it, nats.
 const BEGINNING_MIN: f64 = 6.0;
+/// How many standard deviations some parameter of an effect that sets in late is from where the effect
+/// is not there: an arm's oil begins anew with another law, and that alone may explain a jump.
+const BEGUN_SIGMA: f64 = 2.0;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
 /// The widest and the finest step in which a beginning is looked for, s.
@@ -197,7 +200,11 @@ impl<'a> Docket<'a> {
         Some(self.weighed(open)).filter(|suited| suited.score() > found.score())
     }
 
+    /// What a fit is worth on both sets of runs. One that sets in late and then does nothing is looked at
+    /// as if it had always been there.
     fn weighed(&self, fit: Fit) -> Candidate {
+        let fit =
+            if is_there(&fit) { fit } else { fit.hypothesis.refit(&self.fit, 0.0, &fit.values) };
         let gain = |held| fit.hypothesis.gain(held, fit.from_s, &fit.values);
         // Exactly nothing: not one residual is another with it.
         let held_gain = self.held.as_ref().map(gain).filter(|gain| *gain != 0.0);
@@ -244,6 +251,15 @@ impl<'a> Docket<'a> {
     }
 }
 
+/// Whether an effect that sets in late is there at all from then on.
+fn is_there(fit: &Fit) -> bool {
+    let each = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
+    let is_off = |(p, (value, sigma)): (&Parameter, (&f64, &f64))| {
+        (value - p.neutral).abs() > BEGUN_SIGMA * sigma
+    };
+    fit.from_s == 0.0 || each.into_iter().any(is_off)
+}
+
 /// Puts each of `found` in the place of what was known of its hypothesis, and ranks anew.
 fn merge(all: &mut Vec<Candidate>, found: Vec<Candidate>) {
     for candidate in found {
@@ -257,4 +273,26 @@ fn merge(all: &mut Vec<Candidate>, found: Vec<Candidate>) {
 
 fn rank(all: &mut [Candidate]) {
     all.sort_by(|a, b| b.score().total_cmp(&a.score()));
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::Scope;
+
+    use super::*;
+
+    #[test]
+    fn an_effect_that_sets_in_late_has_to_do_something() {
+        let is_there_at = |share: f64, sigma: f64, from_s: f64| {
+            let mut fit = Candidate::made_up("accumulator-gas", Scope::All, 400.0).fit;
+            for (k, p) in fit.hypothesis.effect.parameters.iter().enumerate() {
+                // Rounded, and known to be anything.
+                (fit.values[k], fit.sigma[k]) = (p.neutral * (1.0 + 1e-8), p.tolerance);
+            }
+            (fit.values[0], fit.sigma[0], fit.from_s) = (share, sigma, from_s);
+            is_there(&fit)
+        };
+        assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
+        assert!(is_there_at(0.5, 0.05, 14.0) && is_there_at(0.0, 0.05, 0.0));
+    }
 }

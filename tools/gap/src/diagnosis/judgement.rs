@@ -17,6 +17,7 @@ use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Diagnosis, Verdict};
+use super::wheel_order::axles_alike;
 use causes::causes;
 use objection::Objection;
 use places::places;
@@ -110,6 +111,14 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
     let mut notes = Vec::new();
     if held.is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
+    }
+    let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
+    if !alike.is_empty() && verdict != Verdict::None {
+        notes.push(format!(
+            "the arms of one axle ({}) are never commanded apart: whether left and right are in their \
+             places there is as the mapping has it",
+            alike.join(", ")
+        ));
     }
     let believed: Vec<String> = findings
         .believed()

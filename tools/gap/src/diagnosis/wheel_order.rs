@@ -3,7 +3,7 @@
 
 use core::fmt;
 
-use xt28_machine::{PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 
 use super::signals::{DT_S, Samples, Signals};
@@ -16,6 +16,12 @@ const MANUAL_POSITION: f64 = 2.0;
 const MOVES: f64 = 0.9;
 /// ... and below this that it does not. In between nothing is said: faults lie there.
 const MOVES_NOT: f64 = 0.6;
+/// Targets of two arms that never differ by more are alike, m.
+const ALIKE_M: f64 = 0.01;
+/// Pressures that miss their own load by less, N, are their own: loads come at another rate ...
+const PRESSED_N: f64 = 4.0e3;
+/// ... and so are those that miss another's by more than this share of that.
+const PRESSED_SHARE: f64 = 0.25;
 /// Samples between two that are looked at.
 const STRIDE: usize = 10;
 
@@ -28,8 +34,9 @@ pub struct Swap {
     pub pairs: Vec<(Wheel, Wheel)>,
 }
 
-/// Wheels whose readings follow the commands of another and not their own; `None` where every
-/// reading follows its own command, or where the commands do not tell.
+/// Wheels whose readings follow the commands of another and not their own, or whose pressures make the
+/// load that another's frame tells; `None` where every reading follows its own command, or where the
+/// commands do not tell.
 #[must_use]
 pub fn swapped_wheels(runs: &[Signals]) -> Option<Swap> {
     let targets = |s: &Signals, w: Wheel| {
@@ -41,6 +48,58 @@ pub fn swapped_wheels(runs: &[Signals]) -> Option<Swap> {
     let rates = |s: &Signals, w: Wheel| s.stroke_rate_m_s[w].clone();
     compare(runs, ["target", "stroke"], &targets, &strokes)
         .or_else(|| compare(runs, ["valve current", "stroke"], &openings, &rates))
+        .or_else(|| mispressed(runs))
+}
+
+/// Axles whose two arms are never commanded otherwise than each other: no log of these shows there
+/// whether left and right are in their places.
+#[must_use]
+pub(super) fn axles_alike<'a>(
+    runs: impl Iterator<Item = &'a Signals> + Clone,
+) -> Vec<&'static str> {
+    let apart = |s: &Signals, [right, left]: [Wheel; 2]| {
+        let manual = |i: &usize| s.arm_mode[*i] == MANUAL_POSITION;
+        let targets = [&s.target_stroke_m[right], &s.target_stroke_m[left]];
+        (0..s.len).filter(manual).any(|i| (targets[0][i] - targets[1][i]).abs() > ALIKE_M)
+    };
+    let axles = [
+        ("front", [Wheel::Fr, Wheel::Fl]),
+        ("middle", [Wheel::Mr, Wheel::Ml]),
+        ("rear", [Wheel::Br, Wheel::Bl]),
+    ];
+    let alike = axles.into_iter().filter(|(_, wheels)| !runs.clone().any(|s| apart(s, *wheels)));
+    alike.map(|(name, _)| name).collect()
+}
+
+/// Wheels whose pressures make the load that the frame of another tells, and not their own. The ECU makes
+/// one of the other, so that they agree on every machine, sound or not.
+fn mispressed(runs: &[Signals]) -> Option<Swap> {
+    let apart_n = PerWheel::from_fn(|w| PerWheel::from_fn(|v| pressures_off_n(runs, w, v)));
+    let meant = |w: Wheel| {
+        let own_n = apart_n[w][w].max(PRESSED_N);
+        let others = Wheel::ALL.into_iter().filter(|v| *v != w);
+        let nearest = others.min_by(|a, b| apart_n[w][*a].total_cmp(&apart_n[w][*b]))?;
+        (apart_n[w][nearest] < PRESSED_SHARE * own_n).then_some((w, nearest))
+    };
+    let pairs = closed(Wheel::ALL.into_iter().filter_map(meant).collect());
+    (!pairs.is_empty()).then_some(Swap { between: ["pressures", "load"], pairs })
+}
+
+/// Root mean square of what the pressures of `wheel` make less the load that the frame tells of `other`, N;
+/// zero where no log has pressures.
+#[allow(clippy::cast_precision_loss)]
+fn pressures_off_n(runs: &[Signals], wheel: Wheel, other: Wheel) -> f64 {
+    let arms = Machine::xt28().arms;
+    let (mut squares, mut count) = (0.0, 0_usize);
+    for s in runs {
+        let [bore, rod] = &s.chamber_pa[wheel];
+        let pressures = bore.iter().zip(rod).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
+        for ((bore, rod), load_n) in pressures {
+            let made_n = bore * arms.area_bore_m2 - rod * arms.area_rod_m2;
+            (squares, count) = (squares + (made_n - load_n).powi(2), count + 1);
+        }
+    }
+    (squares / count.max(1) as f64).sqrt()
 }
 
 type Of<'a> = &'a dyn Fn(&Signals, Wheel) -> Samples;
@@ -53,9 +112,12 @@ fn compare(runs: &[Signals], between: [&'static str; 2], cause: Of, effect: Of) 
             |v: &Wheel| *v != w && r[w][w] < MOVES_NOT && r[*v][*v] < MOVES_NOT && r[w][*v] > MOVES;
         Wheel::ALL.into_iter().filter(other).max_by(|a, b| r[w][*a].total_cmp(&r[w][*b]))
     };
-    let mut pairs: Vec<(Wheel, Wheel)> =
-        Wheel::ALL.into_iter().filter_map(|w| Some((w, follower(w)?))).collect();
-    // Another order is one in which every wheel is somebody's.
+    let pairs = closed(Wheel::ALL.into_iter().filter_map(|w| Some((w, follower(w)?))).collect());
+    (!pairs.is_empty()).then_some(Swap { between, pairs })
+}
+
+/// Those of `pairs` that make another order: one in which every wheel is somebody's.
+fn closed(mut pairs: Vec<(Wheel, Wheel)>) -> Vec<(Wheel, Wheel)> {
     loop {
         let before = pairs.clone();
         let closed = |(w, v): &(Wheel, Wheel)| {
@@ -63,10 +125,9 @@ fn compare(runs: &[Signals], between: [&'static str; 2], cause: Of, effect: Of) 
         };
         pairs.retain(closed);
         if pairs.len() == before.len() {
-            break;
+            return pairs;
         }
     }
-    (!pairs.is_empty()).then_some(Swap { between, pairs })
 }
 
 /// Samples in manual position, a few a second, each less the mean of the six wheels: what all arms do

@@ -17,7 +17,7 @@ pub struct Score {
     pub value: f64,
     /// 95 % interval: Wilson's of a share, a bootstrap over cases of anything else.
     pub interval: [f64; 2],
-    /// Cases behind it.
+    /// Cases behind it; statements behind an error of calibration, numbers behind a share of intervals.
     pub count: usize,
 }
 
@@ -57,6 +57,23 @@ impl Score {
         Self { value: statistic(cases), interval, count: cases.len() }
     }
 
+    /// What chance alone raises, an error of calibration for one: a function of what all cases say together,
+    /// with an interval that cases drawn again and again give, turned about the value. Drawn again the
+    /// statistic is raised a second time, so that the plain interval would lie too high. Counts what is said.
+    #[must_use]
+    pub fn raised<T: Clone>(cases: &[Vec<T>], statistic: impl Fn(&[T]) -> f64) -> Self {
+        let said = cases.concat();
+        if said.is_empty() {
+            return Self::unsaid();
+        }
+        let spread = Self::of(&cases.iter().collect::<Vec<_>>(), |cases| {
+            let said: Vec<T> = cases.iter().flat_map(|case| case.iter().cloned()).collect();
+            if said.is_empty() { f64::NAN } else { statistic(&said) }
+        });
+        let [low, high] = spread.interval.map(|end| (2.0 * spread.value - end).max(0.0));
+        Self { value: spread.value, interval: [high, low], count: said.len() }
+    }
+
     /// What nobody has stated.
     #[must_use]
     pub const fn unsaid() -> Self {
@@ -73,6 +90,17 @@ pub(crate) fn average(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_chance_raises_may_be_nothing() {
+        // Coins that are said to fall on either side, and do: what is left is chance.
+        let cases: Vec<Vec<f64>> = (0..40).map(|i| vec![f64::from(i * 7 % 5 % 2)]).collect();
+        let off = |said: &[f64]| (average(said) - 0.5).abs();
+        let score = Score::raised(&cases, off);
+        assert!(score.interval[0] < 0.01 && score.interval[1] > score.value, "{score:?}");
+        assert_eq!(score.count, 40);
+        assert!(Score::raised(&[Vec::<f64>::new()], off).value.is_nan());
+    }
 
     #[test]
     fn a_share_and_a_mean_have_value_interval_and_count() {

@@ -1,7 +1,9 @@
 //! One arm's valve and oil, driven with what was measured.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::{ArmEffects, SealStiction, WheelEffects};
+use xt28_sim::effects::{
+    ArmEffects, Block, CATALOGUE, LOCK_STIFFNESS, Scope, SealStiction, WheelEffects,
+};
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
@@ -12,6 +14,9 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 /// a tenth of a millimetre a second stands out over a run, short enough that what a law has wrong by a
 /// few per cent does not add up to more than the fault itself.
 const FORGET_S: f64 = 2.0;
+/// Share of a tolerance below which a parameter is where it was.
+const ROUNDING: f64 = 1e-3;
+
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
     signals: &'a Signals,
@@ -57,9 +62,8 @@ impl<'a> ArmDrive<'a> {
         let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
         let from = sample(course.from_s);
         self.before = (from > 0).then_some((from, course.before.wheels[self.wheel]));
-        let becomes = |at: usize, [was, is]: [&Effects; 2]| {
-            (was.arms[self.wheel] != is.arms[self.wheel]).then_some(at)
-        };
+        let becomes =
+            |at: usize, [was, is]: [&Effects; 2]| is_another_arm(was, is, self.wheel).then_some(at);
         let sound = Effects::default();
         self.anew = [
             becomes(sample(course.since_s), [&sound, course.before]),
@@ -151,5 +155,40 @@ impl<'a> ArmDrive<'a> {
     fn read(&self, i: usize, load_n: f64) -> f64 {
         let s = self.sensors(i);
         s.pressure_scale.factor * load_n + s.pressure_bias.bias_pa * self.area_bore_m2
+    }
+}
+
+/// Whether the arm of `wheel` is another under `is` than under `was`, by more than the rounding of a search.
+fn is_another_arm(was: &Effects, is: &Effects, wheel: Wheel) -> bool {
+    if was.arms[wheel] == is.arms[wheel] {
+        return false;
+    }
+    let of_arms = CATALOGUE.iter().filter(|effect| effect.block == Block::Arms);
+    of_arms.chain([&LOCK_STIFFNESS]).flat_map(|effect| effect.parameters).any(|p| {
+        let [before, after] = [was, is].map(|effects| p.get(effects, Scope::Wheel(wheel)));
+        (after - before).abs() > ROUNDING * p.tolerance
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::Effect;
+
+    use super::*;
+
+    #[test]
+    fn rounding_makes_no_other_arm_and_a_leak_does() {
+        let was = Effects::default();
+        let find = |name: &str| xt28_sim::effects::find(name).unwrap();
+        let with = |effect: &Effect, by: f64| {
+            let p = &effect.parameters[0];
+            let mut is = was.clone();
+            p.set(&mut is, Scope::Wheel(Wheel::Ml), p.neutral + by * p.tolerance);
+            [Wheel::Ml, Wheel::Fr].map(|wheel| is_another_arm(&was, &is, wheel))
+        };
+        assert_eq!(with(find("accumulator-gas"), 1e-6), [false, false]);
+        for effect in [find("accumulator-gas"), find("leakage-drift"), &LOCK_STIFFNESS] {
+            assert_eq!(with(effect, 1.0), [true, false], "{}", effect.name);
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::blocks::{
     Arm, ArmInput, ArmState, CylinderMotion, Drive, DriveInput, DriveOutput, DriveState,
     FlowSharing, Steering, SteeringState,
 };
-use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion};
+use crate::bodies::{HingeMotion, HingeSpring, Loads, Motion, RollingDrag};
 use crate::{Actuation, Effects, Held, REFERENCE_STROKE_M, VehicleState};
 
 /// Below this wheel speed the rolling drag fades, rad/s: dry friction without a jump (assumed).
@@ -159,7 +159,7 @@ impl Actuators {
             arm,
             joint,
             drive_nm: drive.wheel_torque_nm,
-            drag_nm: self.rolling_drag_nm(motion),
+            drag: self.rolling_drag(motion),
             hold_nm: drive.hold_nm.map(|nm| nm + brake_nm),
         }
     }
@@ -259,11 +259,11 @@ impl Actuators {
         self.drive.step(&mut self.shaft, &drive_input(actuation, motion), dt_s)
     }
 
-    fn rolling_drag_nm(&self, motion: &Motion) -> PerWheel<f64> {
+    fn rolling_drag(&self, motion: &Motion) -> PerWheel<RollingDrag> {
         PerWheel::from_fn(|wheel| {
             let normal_n = motion.ground_force_n[wheel].max(0.0);
-            let fade = (motion.wheel_rate_rad_s[wheel] / DRAG_FADE_RAD_S).tanh();
-            -self.rolling_resistance_m[wheel] * normal_n * fade
+            let most_nm = self.rolling_resistance_m[wheel] * normal_n;
+            RollingDrag::tanh(most_nm, DRAG_FADE_RAD_S, motion.wheel_rate_rad_s[wheel])
         })
     }
 }

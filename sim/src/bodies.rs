@@ -63,6 +63,30 @@ impl HingeSpring {
     }
 }
 
+/// Dry friction of the ground against a wheel's rolling, without a jump at rest.
+///
+/// The torque falls from `most_nm` through nothing to its opposite within some hundredths of a rad/s,
+/// on soft ground so steeply that it would turn a wheel alone around within a step. A solver that
+/// moves all parts at once may take it as it was at the step's start, since a wheel on the ground has
+/// the machine's inertia. One whose tyres reckon with the wheel alone must take it at the step's end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RollingDrag {
+    /// Torque in the motion at the step's start, Nm, forward > 0.
+    pub torque_nm: f64,
+    /// What it comes to as the wheel turns faster, Nm.
+    pub most_nm: f64,
+    /// Rate at which it has come to some three quarters of that, rad/s.
+    pub fade_rad_s: f64,
+}
+
+impl RollingDrag {
+    /// At most `most_nm` against a turn of `rate_rad_s`: most tanh(rate / fade).
+    #[must_use]
+    pub fn tanh(most_nm: f64, fade_rad_s: f64, rate_rad_s: f64) -> Self {
+        Self { torque_nm: -most_nm * (rate_rad_s / fade_rad_s).tanh(), most_nm, fade_rad_s }
+    }
+}
+
 /// How the rigid bodies move at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
@@ -111,8 +135,8 @@ pub struct Loads {
     pub joint: [HingeSpring; 2],
     /// Motor torques on the wheels, Nm, forward > 0; the arm bears the reaction.
     pub drive_nm: PerWheel<f64>,
-    /// Rolling resistance, Nm, forward > 0: from the ground on the wheel alone.
-    pub drag_nm: PerWheel<f64>,
+    /// Rolling resistance: from the ground on the wheel alone.
+    pub drag: PerWheel<RollingDrag>,
     /// Dry friction that holds each wheel against its arm, Nm.
     pub hold_nm: PerWheel<f64>,
 }

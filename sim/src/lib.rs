@@ -25,7 +25,7 @@ pub use blocks::{
     Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, PATCHES_MAX, PatchInput,
     PatchState, Patches, Steering, SteeringInput, SteeringState, Tyre, Valve, ValveState,
 };
-pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
+pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed, RollingDrag};
 pub use effects::Effects;
 pub use parts::{
     ArmPart, Brush, HullBall, Part, Parts, REFERENCE_STROKE_M, RollHinge, Tilt, TyrePart,

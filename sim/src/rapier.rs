@@ -4,6 +4,8 @@ mod bodies;
 mod ground_contact;
 mod hull_watch;
 mod insert;
+mod roll_hinge;
+mod rolling;
 mod shapes;
 mod tyre_contact;
 

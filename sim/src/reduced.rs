@@ -185,7 +185,7 @@ impl ReducedBodies {
         let mut on_wheel = [spatial::ZERO; 6];
         for i in 0..6 {
             lack[WHEELS + i] -= loads.drive_nm.0[i];
-            on_wheel[i] = spatial::join(pose.arm[i].axle * loads.drag_nm.0[i], DVec3::ZERO);
+            on_wheel[i] = spatial::join(pose.arm[i].axle * loads.drag.0[i].torque_nm, DVec3::ZERO);
         }
         let from_ground = newton::generalised(pose, &on_wheel, [spatial::ZERO; 3]);
         for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {

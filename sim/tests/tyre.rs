@@ -201,3 +201,65 @@ fn rolling_costs_the_rolling_resistance() {
     let made_nm = late.iter().map(|s| s.wheel_torque_nm.sum()).sum::<f64>() / late.len() as f64;
     assert!((made_nm / asked_nm - 1.0).abs() < 2e-3, "{made_nm} Nm of {asked_nm} Nm");
 }
+
+/// Rolling resistance in soil, mire and snow holds a wheel at rest as hard ground does, and once it has
+/// been driven.
+#[test]
+fn a_machine_stands_still_however_hard_it_rolls() {
+    let mut machine = Machine::xt28();
+    for coefficient in [0.02, 0.05, 0.2, 0.5] {
+        machine.wheels.rolling_resistance = coefficient;
+        for pump in [0.0, 0.5] {
+            let mut vehicle = vehicle(&machine, &Effects::default(), &Terrain::Flat);
+            let mut fastest_rad_s = 0.0_f64;
+            for step in 0..1600 {
+                let pump = if (400..600).contains(&step) { pump } else { 0.0 };
+                let throttle =
+                    Actuation { pump_displacement: [pump; 2], ..Actuation::idle(1200.0) };
+                vehicle.step(&throttle);
+                if step >= 1400 {
+                    let rates = vehicle.state().wheel_speed_rad_s.0;
+                    fastest_rad_s = rates.iter().fold(fastest_rad_s, |w, rate| w.max(rate.abs()));
+                }
+            }
+            let rim_m_s = fastest_rad_s * machine.wheels.radius_m;
+            assert!(rim_m_s < 0.003, "{coefficient}, driven by {pump}: {rim_m_s} m/s");
+        }
+    }
+}
+
+/// On a slope with the motors off only the rolling resistance holds. Up to its limit the machine creeps
+/// as the resistance fades, and beyond it rolls off with what is left of its weight.
+#[test]
+fn rolling_resistance_holds_on_a_slope_up_to_its_limit() {
+    let mut machine = Machine::xt28();
+    let off = Actuation { motor_displacement: PerWheel::splat(0.0), ..Actuation::idle(1200.0) };
+    for coefficient in [0.05, 0.2] {
+        machine.wheels.rolling_resistance = coefficient;
+        let speeds_m_s = |share: f64| {
+            let grade_rad = (share * coefficient).atan();
+            let text = format!("[[effect]]\nname = \"terrain-slope\"\ngrade_x_rad = {grade_rad}");
+            let mut vehicle = vehicle(&machine, &overlay(&text), &Terrain::Flat);
+            let after_1_s = |vehicle: &mut Vehicle| {
+                (0..200).for_each(|_| vehicle.step(&off));
+                -vehicle.state().wheel_speed_rad_s.mean() * machine.wheels.radius_m
+            };
+            [(); 5].map(|()| after_1_s(&mut vehicle))
+        };
+        let creep_m_s = 0.05 * 0.5_f64.atanh() * machine.wheels.radius_m;
+        let [.., before, last] = speeds_m_s(0.5);
+        assert!(
+            (last / creep_m_s - 1.0).abs() < 0.03,
+            "{coefficient}: {last}, not {creep_m_s} m/s"
+        );
+        assert!((last - before).abs() < 1e-4, "{coefficient}: {last} m/s after {before} m/s");
+        let inertia_kg = 6.0
+            * machine.masses.wheel_kg
+            * (machine.vehicle.wheel_gyration_m / machine.wheels.radius_m).powi(2);
+        let left_m_s2 = 0.5 * coefficient * GRAVITY_M_S2 * (1.5 * coefficient).atan().cos();
+        let gains_m_s = left_m_s2 * machine.mass_kg() / (machine.mass_kg() + inertia_kg);
+        let [.., before, last] = speeds_m_s(1.5);
+        let gained_m_s = last - before;
+        assert!((gained_m_s / gains_m_s - 1.0).abs() < 0.02, "{gained_m_s}, not {gains_m_s} m/s");
+    }
+}

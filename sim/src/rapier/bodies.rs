@@ -8,6 +8,7 @@ use xt28_machine::{PerWheel, Wheel};
 
 use super::hull_watch::HullWatch;
 use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
+use super::roll_hinge::roll_spring;
 use super::shapes::Ground;
 use super::tyre_contact::{Rim, Tread, TyreContact};
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
@@ -194,11 +195,11 @@ impl RapierBodies {
     #[allow(clippy::cast_possible_truncation)]
     fn sub_step(&mut self, loads: &Loads, dt_s: f64) {
         self.set_springs(loads);
-        self.set_wheel_torques(loads);
+        self.set_drive(loads);
         for hull in &mut self.hulls {
             hull.look(&mut self.world, &self.terrain, dt_s);
         }
-        self.push_tyres(dt_s);
+        self.push_tyres(loads, dt_s);
         self.world.integration_parameters.dt = dt_s as Real;
         self.world.step();
         let push_n = |hull: &HullWatch| {
@@ -233,17 +234,17 @@ impl RapierBodies {
         }
     }
 
-    fn set_wheel_torques(&mut self, loads: &Loads) {
+    fn set_drive(&mut self, loads: &Loads) {
         for wheel in Wheel::ALL {
             let axle = self.axle(wheel);
             #[allow(clippy::cast_possible_truncation)]
-            let (drive, drag) = (loads.drive_nm[wheel] as Real, loads.drag_nm[wheel] as Real);
+            let drive = loads.drive_nm[wheel] as Real;
             let arm = &mut self.world.bodies[self.arms[wheel]];
             arm.reset_torques(false);
             arm.add_torque(axle * -drive, false);
             let body = &mut self.world.bodies[self.wheels[wheel]];
             body.reset_torques(false);
-            body.add_torque(axle * (drive + drag), false);
+            body.add_torque(axle * drive, false);
         }
     }
 
@@ -252,15 +253,18 @@ impl RapierBodies {
         self.world.bodies[self.arms[wheel]].rotation() * Vector::Y
     }
 
-    /// Hands the tyres' forces to their wheels.
-    fn push_tyres(&mut self, dt_s: f64) {
+    /// Hands the tyres' forces and the rolling resistance to their wheels.
+    fn push_tyres(&mut self, loads: &Loads, dt_s: f64) {
         for wheel in Wheel::ALL {
             let rim = Rim {
                 centre: self.world.bodies[self.wheels[wheel]].translation(),
                 axle: self.axle(wheel),
                 velocities: self.velocities(self.wheel_hinges[wheel].link),
+                rate_rad_s: self.hinge_motion(self.wheel_hinges[wheel]).rate_rad_s,
+                drive_nm: loads.drive_nm[wheel],
             };
-            let [force, torque] = self.tyres[wheel].push(&rim, &self.terrain, dt_s);
+            let [force, torque] =
+                self.tyres[wheel].push(&rim, &self.terrain, &loads.drag[wheel], dt_s);
             let body = &mut self.world.bodies[self.wheels[wheel]];
             body.reset_forces(false);
             body.add_force(force, false);
@@ -364,20 +368,6 @@ impl RapierBodies {
         multibody.forward_kinematics(&world.bodies, false);
         multibody.update_rigid_bodies(&mut world.bodies, true);
     }
-}
-
-/// Stiffness of the roll hinge's metal stops, Nm/rad (assumed).
-const ROLL_STOP_NM: f64 = 2.0e7;
-
-/// A roll hinge's spring, or its stop once it is past it.
-fn roll_spring(law: &RollHinge, angle_rad: f64) -> HingeSpring {
-    let RollHinge { stiffness_nm, damping_nms, max_rad } = *law;
-    if angle_rad.abs() <= max_rad {
-        return HingeSpring { stiffness_nm, damping_nms, rest_rad: 0.0 };
-    }
-    let both_nm = stiffness_nm + ROLL_STOP_NM;
-    let rest_rad = max_rad.copysign(angle_rad) * ROLL_STOP_NM / both_nm;
-    HingeSpring { stiffness_nm: both_nm, damping_nms: damping_nms + 0.01 * ROLL_STOP_NM, rest_rad }
 }
 
 /// The multibody of a part; borrows the joints alone, so that the bodies stay free to be read.

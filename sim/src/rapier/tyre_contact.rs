@@ -9,9 +9,10 @@ use xt28_machine::Wheel;
 use xt28_terrain::Nearest;
 
 use super::insert::vector;
-use crate::Terrain;
+use super::rolling::Rolling;
 use crate::blocks::{PATCHES_MAX, PatchInput, Patches, Tyre};
 use crate::parts::Parts;
+use crate::{RollingDrag, Terrain};
 
 /// Share of the deflection by which the radius is smaller that the wheel rolls on and that forces along
 /// the ground have as lever: between the third of a radial tyre and the whole of a rigid band.
@@ -25,6 +26,10 @@ pub(super) struct Rim {
     pub(super) axle: Vector,
     /// Velocity of the centre, m/s, and angular velocity, rad/s.
     pub(super) velocities: [Vector; 2],
+    /// Its turning about the axle, against the arm, rad/s.
+    pub(super) rate_rad_s: f64,
+    /// The motor's torque on it in the coming step, Nm.
+    pub(super) drive_nm: f64,
 }
 
 /// How a wheel's tread met the ground: what the tyre's block was fed, in the ground's axes.
@@ -62,6 +67,7 @@ pub(super) struct TyreContact {
     /// Where it touched before the last step, and what it remembers of that.
     tread: Tread,
     patches: Patches,
+    rolling: Rolling,
 }
 
 impl TyreContact {
@@ -75,6 +81,7 @@ impl TyreContact {
             slip: part.slip,
             tread: Tread::default(),
             patches: Patches::default(),
+            rolling: Rolling::new(rim.inertia_kg_m2[1]),
         }
     }
 
@@ -83,9 +90,15 @@ impl TyreContact {
         &self.tread
     }
 
-    /// Steps the tyre from where its wheel is now. Gives force and torque on the wheel for the
-    /// engine's next step of `dt_s` s.
-    pub(super) fn push(&mut self, rim: &Rim, terrain: &Terrain, dt_s: f64) -> [Vector; 2] {
+    /// Steps the tyre from where its wheel is now. Gives force and torque on the wheel, rolling
+    /// resistance among it, for the engine's next step of `dt_s` s.
+    pub(super) fn push(
+        &mut self,
+        rim: &Rim,
+        terrain: &Terrain,
+        drag: &RollingDrag,
+        dt_s: f64,
+    ) -> [Vector; 2] {
         let minima = terrain.nearest(rim.centre.to_array().map(f64::from), self.radius_m);
         let met: Vec<Patch> = minima.points().iter().map(|near| self.meet(rim, near)).collect();
         self.tread = Tread::new(rim.axle, &met);
@@ -98,7 +111,9 @@ impl TyreContact {
             force += push;
             torque += patch.lever.cross(push);
         }
-        [force, torque]
+        let turning_nm = rim.drive_nm + f64::from(torque.dot(rim.axle));
+        let drag_nm = self.rolling.step(drag, rim.rate_rad_s, turning_nm, dt_s);
+        [force, torque + rim.axle * narrow(drag_nm)]
     }
 
     fn meet(&self, rim: &Rim, nearest: &Nearest) -> Patch {

@@ -103,7 +103,7 @@ impl<B: Bodies> Foreign<B> {
                 self.joints[i].turn(&truth.steering, machine, self.motion.joint[i], rate, STEP_S)
             }),
             drive_nm: torques.drive_nm,
-            drag_nm: torques.drag_nm,
+            drag: torques.drag,
             hold_nm: torques.hold_nm,
         };
         self.bodies.advance(&loads, STEP_S);

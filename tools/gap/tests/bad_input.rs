@@ -107,12 +107,9 @@ fn a_fault_of_an_arm_is_no_swap() {
     }
 }
 
-/// The ECU makes the load of the pressures, so that they agree whatever is wrong with the machine.
-#[test]
-fn pressures_of_another_wheel_are_found() {
+/// Loads that come as `load_n` says of each wheel, with the pressures that make them.
+fn pressed(load_n: impl Fn(Wheel, f64) -> f64) -> BTreeMap<Channel, Series> {
     let arms = Machine::xt28().arms;
-    const PHASES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
-    let load_n = |w: Wheel, t: f64| 3.0e4 + 8.0e3 * (0.3 * t + PHASES[w.index()]).sin();
     let mut all = swinging();
     for w in Wheel::ALL {
         all.insert(Channel::CylinderLoad(w), series(|t| load_n(w, t)));
@@ -120,11 +117,32 @@ fn pressures_of_another_wheel_are_found() {
         let bore = |t| (load_n(w, t) + 1.0e6 * arms.area_rod_m2) / arms.area_bore_m2;
         all.insert(Channel::BorePressure(w), series(bore));
     }
+    all
+}
+
+fn swap(all: &mut BTreeMap<Channel, Series>, [a, b]: [Channel; 2]) {
+    let (of_a, of_b) = (all[&a].clone(), all[&b].clone());
+    all.insert(a, of_b);
+    all.insert(b, of_a);
+}
+
+/// The ECU makes the load of the pressures, so that they agree whatever is wrong with the machine.
+#[test]
+fn pressures_of_another_wheel_are_found() {
+    const PHASES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+    let mut all = pressed(|w, t| 3.0e4 + 8.0e3 * (0.3 * t + PHASES[w.index()]).sin());
     assert_eq!(swapped_wheels(&signals(&all)), None);
-    let [right, left] = [Wheel::Fr, Wheel::Fl].map(Channel::BorePressure);
-    let (of_right, of_left) = (all[&right].clone(), all[&left].clone());
-    (all.insert(right, of_left), all.insert(left, of_right));
-    let swap = swapped_wheels(&signals(&all)).expect("they are swapped");
-    assert_eq!(swap.between, ["pressures", "load"]);
-    assert_eq!(swap.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
+    swap(&mut all, [Wheel::Fr, Wheel::Fl].map(Channel::BorePressure));
+    let found = swapped_wheels(&signals(&all)).expect("they are swapped");
+    assert_eq!(found.between, ["pressures", "load"]);
+    assert_eq!(found.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
+}
+
+/// Two arms that carry the same say nothing of their order.
+#[test]
+fn pressures_of_arms_that_carry_alike_are_in_order() {
+    let all = pressed(|w, t| {
+        3.0e4 + 8.0e3 * (0.3 * t + f64::from(u8::from(w.name().starts_with('F')))).sin()
+    });
+    assert_eq!(swapped_wheels(&signals(&all)), None);
 }

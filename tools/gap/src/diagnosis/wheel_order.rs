@@ -18,8 +18,9 @@ const MOVES: f64 = 0.9;
 const MOVES_NOT: f64 = 0.6;
 /// Targets of two arms that never differ by more are alike, m.
 const ALIKE_M: f64 = 0.01;
-/// Pressures that miss their own load by less, N, are their own: loads come at another rate ...
-const PRESSED_N: f64 = 4.0e3;
+/// Pressures that miss their own load by less, N, are their own: loads come at another rate, and those of
+/// two arms may be alike ...
+const PRESSED_N: f64 = 2.0e3;
 /// ... and so are those that miss another's by more than this share of that.
 const PRESSED_SHARE: f64 = 0.25;
 /// Samples between two that are looked at.
@@ -76,10 +77,11 @@ pub(super) fn axles_alike<'a>(
 fn mispressed(runs: &[Signals]) -> Option<Swap> {
     let apart_n = PerWheel::from_fn(|w| PerWheel::from_fn(|v| pressures_off_n(runs, w, v)));
     let meant = |w: Wheel| {
-        let own_n = apart_n[w][w].max(PRESSED_N);
+        let own_n = apart_n[w][w];
         let others = Wheel::ALL.into_iter().filter(|v| *v != w);
         let nearest = others.min_by(|a, b| apart_n[w][*a].total_cmp(&apart_n[w][*b]))?;
-        (apart_n[w][nearest] < PRESSED_SHARE * own_n).then_some((w, nearest))
+        let is_others = own_n > PRESSED_N && apart_n[w][nearest] < PRESSED_SHARE * own_n;
+        is_others.then_some((w, nearest))
     };
     let pairs = closed(Wheel::ALL.into_iter().filter_map(meant).collect());
     (!pairs.is_empty()).then_some(Swap { between: ["pressures", "load"], pairs })

@@ -1,6 +1,7 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
 mod receiver;
+mod uncut;
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -10,6 +11,8 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::instant::Instant;
+use uncut::{CUT_M, uncut};
+
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 
 /// Time series by channel, as logs and replays have them.
@@ -30,8 +33,10 @@ pub struct Signals {
     pub terrain: Terrain,
     /// Number of samples.
     pub len: usize,
-    /// Stroke commanded.
+    /// Stroke commanded; where the arm stood, while it is to be held.
     pub target_stroke_m: PerWheel<Samples>,
+    /// Whether the arm is to be held, its valve shut.
+    pub is_held: PerWheel<Vec<bool>>,
     /// Mode of the arms commanded, 0 to 3.
     pub arm_mode: Samples,
     /// Opening that the ECU's currents ask of each arm valve, -1 to 1.
@@ -126,6 +131,8 @@ impl Signals {
             both(&a, &b, pins::steer_opening)
         };
         let stroke_reading_m = wheels(Channel::Stroke);
+        let mut target_stroke_m = wheels(Channel::TargetStroke);
+        let is_held = PerWheel::from_fn(|w| hold(&mut target_stroke_m[w], &stroke_reading_m[w]));
         let smooth = |raw: &Samples| moving_mean(&moving_mean(raw, 0.3), 0.3);
         let smooth_stroke_m = PerWheel::from_fn(|w| {
             smooth(&stroke_reading_m[w]).into_iter().map(|read| read + 0.5 * CUT_M).collect()
@@ -136,7 +143,8 @@ impl Signals {
             name: name.to_owned(),
             terrain,
             len,
-            target_stroke_m: wheels(Channel::TargetStroke),
+            target_stroke_m,
+            is_held,
             arm_mode: sample(Channel::ArmMode),
             opening: PerWheel::from_fn(|w| both(&a[w], &b[w], pins::valve_opening)),
             stroke_rate_m_s: PerWheel::from_fn(|w| slope(&stroke_m[w])),
@@ -231,6 +239,21 @@ pub(crate) fn needed() -> impl Iterator<Item = Channel> {
     Channel::all().into_iter().filter(move |c| !receiver.contains(c) && !unused(c))
 }
 
+/// Target from which on it is none: it says to hold the arm (the wire contract: 510 mm).
+const HOLDS_M: f64 = 0.5095;
+
+/// Where `target_m` says to hold the arm; the target there becomes the stroke at which it was told so.
+fn hold(target_m: &mut Samples, reading_m: &Samples) -> Vec<bool> {
+    let mut stands_m = None;
+    let told = target_m.iter_mut().zip(reading_m).map(|(target_m, reading_m)| {
+        let holds = *target_m > HOLDS_M;
+        stands_m = holds.then(|| stands_m.unwrap_or(*reading_m));
+        *target_m = stands_m.unwrap_or(*target_m);
+        holds
+    });
+    told.collect()
+}
+
 /// Refuses `series` that lack what diagnosis needs.
 fn complete(name: &str, series: &AllSeries) -> Result<(), GapError> {
     let missing: Vec<String> = needed()
@@ -313,54 +336,17 @@ pub(super) fn moving_mean(samples: &[f64], window_s: f64) -> Samples {
         .collect()
 }
 
-/// Step of a stroke's reading, m.
-const CUT_M: f64 = 1.0e-3;
-/// A reading that stays for longer says only that the stroke is within its step.
-const STAYS: usize = 40;
-
-/// Strokes from readings that are cut off to whole millimetres. Between two readings that differ, the
-/// stroke has crossed the edges between them; from crossing to crossing it goes straight.
-#[allow(clippy::cast_precision_loss)]
-fn uncut(reading: &Samples) -> Samples {
-    let mut known: Vec<(f64, f64)> = Vec::new();
-    let middle = |value: f64| value + 0.5 * CUT_M;
-    let stay = |known: &mut Vec<(f64, f64)>, from: usize, to: usize, value: f64| {
-        if to - from > STAYS {
-            known.push(((from + STAYS / 2) as f64, middle(value)));
-            known.push(((to - STAYS / 2) as f64, middle(value)));
-        }
-    };
-    let mut since = 0;
-    for i in 1..reading.len() {
-        if reading[i] != reading[i - 1] {
-            stay(&mut known, since, i, reading[i - 1]);
-            // All edges crossed on the way, at the middle of the sample.
-            known.push((i as f64 - 0.5, middle(0.5 * (reading[i] + reading[i - 1]))));
-            since = i;
-        }
-    }
-    if let Some(last) = reading.last() {
-        stay(&mut known, since, reading.len(), *last);
-    }
-    let mut after = 0;
-    (0..reading.len())
-        .map(|i| {
-            let now = i as f64;
-            while after < known.len() && known[after].0 <= now {
-                after += 1;
-            }
-            match (after.checked_sub(1).map(|k| known[k]), known.get(after)) {
-                (Some((from, a)), Some(&(to, b))) => a + (b - a) * (now - from) / (to - from),
-                (Some((_, value)), None) | (None, Some(&(_, value))) => value,
-                (None, None) => middle(reading[i]),
-            }
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_arm_that_is_to_be_held_has_no_target_but_where_it_stands() {
+        let mut target_m = vec![0.1, 0.51, 0.51, 0.2, 0.51];
+        let held = hold(&mut target_m, &vec![0.12, 0.13, 0.14, 0.15, 0.16]);
+        assert_eq!(held, [false, true, true, false, true]);
+        assert_eq!(target_m, [0.1, 0.13, 0.13, 0.2, 0.16]);
+    }
 
     #[test]
     fn a_moving_mean_keeps_a_line_and_flattens_a_spike() {

@@ -13,7 +13,8 @@ const MANUAL_POSITION: f64 = 2.0;
 /// Halvings in the search for what was summed up: to a hundredth of the most.
 const HALVINGS: usize = 3;
 
-/// Opening that the position PI would ask for less the one that was asked for; `NaN` in other modes.
+/// Opening that the position PI would ask for less the one that was asked for; `NaN` in other modes, and where
+/// the arm is to be held.
 ///
 /// A current in whole milliamperes leaves open which opening was meant: what would show as the same
 /// current, cut off or rounded, is no error. Nor does the log say what the PI had summed up before
@@ -30,7 +31,8 @@ pub(super) fn arm_opening_error(
     let mut errors = Samples::with_capacity(signals.len);
     while errors.len() < signals.len {
         let from = errors.len();
-        let at_work = |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION;
+        let at_work =
+            |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION && !signals.is_held[wheel][*i];
         let to = (from..signals.len).find(|i| !at_work(i)).unwrap_or(signals.len);
         let target_m = &signals.target_stroke_m[wheel];
         let mm = |m: f64| (m * 1e3).round();

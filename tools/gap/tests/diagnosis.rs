@@ -1,6 +1,7 @@
 //! Diagnosis on logs of a second plant, and on what our own plant does with an effect put in.
 
 use std::collections::BTreeMap;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use rand::{Rng, SeedableRng};
@@ -15,7 +16,7 @@ use xt28_sim::{Effects, Solver};
 fn field_data() -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/field-data");
     if !path.exists() {
-        eprintln!("SKIPPED: {} is not there", path.display());
+        let _ = writeln!(io::stdout(), "SKIPPED: {} is not there", path.display());
         return None;
     }
     Some(path)

@@ -1,5 +1,6 @@
 //! How far the gap shrinks: on what our own plant does with an effect put in, and on logs of a second one.
 
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use proptest::prelude::*;
@@ -135,7 +136,7 @@ fn a_sound_machine_is_foretold_to_about_a_floor() {
     if !data.exists() {
         #[allow(clippy::disallowed_macros)] // A test that skips says so.
         {
-            eprintln!("SKIPPED: {} is not there", data.display());
+            let _ = writeln!(io::stdout(), "SKIPPED: {} is not there", data.display());
         }
         return;
     }

@@ -11,9 +11,8 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::instant::Instant;
-use uncut::{CUT_M, uncut};
-
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
+use uncut::{CUT_M, uncut};
 
 /// Time series by channel, as logs and replays have them.
 type AllSeries = BTreeMap<Channel, Series>;
@@ -158,12 +157,7 @@ impl Signals {
             chamber_pa: PerWheel::from_fn(|w| {
                 [sample(Channel::BorePressure(w)), sample(Channel::RodPressure(w))]
             }),
-            load_is_new: PerWheel::from_fn(|w| {
-                let pressures = [Channel::BorePressure(w), Channel::RodPressure(w)];
-                let logged = pressures.iter().all(|channel| series.contains_key(channel));
-                let load = Channel::CylinderLoad(w);
-                is_new(series.get(if logged { &pressures[0] } else { &load }), len)
-            }),
+            load_is_new: PerWheel::from_fn(|w| fresh(load_channel(series, w))),
             steer_opening: [
                 steer(SteerSide::FrontA, SteerSide::FrontB),
                 steer(SteerSide::RearA, SteerSide::RearB),
@@ -237,6 +231,13 @@ pub(crate) fn needed() -> impl Iterator<Item = Channel> {
         )
     };
     Channel::all().into_iter().filter(move |c| !receiver.contains(c) && !unused(c))
+}
+
+/// What the load of a cylinder is read from: its pressures where they are logged.
+fn load_channel(series: &AllSeries, wheel: Wheel) -> Channel {
+    let pressures = [Channel::BorePressure(wheel), Channel::RodPressure(wheel)];
+    let logged = pressures.iter().all(|channel| series.contains_key(channel));
+    if logged { pressures[0] } else { Channel::CylinderLoad(wheel) }
 }
 
 /// Target from which on it is none: it says to hold the arm (the wire contract: 510 mm).

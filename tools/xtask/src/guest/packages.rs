@@ -44,47 +44,22 @@ fn missing(needs: &[Need]) -> Vec<&'static str> {
     needs.iter().filter(absent).map(|need| need.package).collect()
 }
 
-fn by_hand(missing: &[&str]) -> String {
-    let list = missing.join(" ");
-    format!("as root: apt-get install --no-install-recommends {list}")
-}
-
-/// What somebody with more rights would have to do first to have everything of `needs`.
+/// What somebody would have to do first to have everything of `needs`. Nothing is installed on anybody's
+/// machine unasked.
 pub(super) fn out_of_reach(needs: &[Need]) -> Option<String> {
     let missing = missing(needs);
-    let allowed = rustix::process::geteuid().is_root();
-    (!missing.is_empty() && !allowed).then(|| by_hand(&missing))
+    let list = missing.join(" ");
+    (!missing.is_empty())
+        .then(|| format!("as root: apt-get install --no-install-recommends {list}"))
 }
 
-/// Has everything of `needs`, by installing what is missing where that is allowed.
+/// Refuses to go on without everything of `needs`.
 ///
 /// # Errors
 /// Names the missing packages and the command that installs them.
 pub(super) fn require(needs: &[Need]) -> Outcome<()> {
-    let absent = missing(needs);
-    if absent.is_empty() {
-        return Ok(());
-    }
-    if let Some(remedy) = out_of_reach(needs) {
-        return Err(format!("the guest needs Debian packages; {remedy}").into());
-    }
-    eprintln!("installing {}", absent.join(" "));
-    let install = ["install", "--yes", "--quiet=2", "--no-install-recommends"];
-    let installed = apt_get(&["update", "--quiet=2"])
-        && apt_get(&install.iter().chain(&absent).copied().collect::<Vec<_>>());
-    let left = missing(needs);
-    if !installed || !left.is_empty() {
-        let remedy = by_hand(&left);
-        return Err(format!("could not install the guest's packages; {remedy}").into());
-    }
-    Ok(())
-}
-
-fn apt_get(arguments: &[&str]) -> bool {
-    let mut command = Command::new("apt-get");
-    command.env("DEBIAN_FRONTEND", "noninteractive").args(arguments);
-    // Its progress is talk; stdout is the caller's.
-    command.stdout(std::io::stderr()).status().is_ok_and(|status| status.success())
+    out_of_reach(needs)
+        .map_or(Ok(()), |remedy| Err(format!("the guest needs Debian packages; {remedy}").into()))
 }
 
 /// The installed version of a package; `None` where there is none, or no dpkg.

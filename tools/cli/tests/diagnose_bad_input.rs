@@ -148,3 +148,33 @@ fn a_log_that_nothing_speaks_of_needs_its_ground_told() {
         assert_ne!(told.status.code(), Some(2), "{}", String::from_utf8_lossy(&told.stderr));
     }
 }
+
+/// Whether a refusal of `outputs` says `words` and leaves the log and its database as they were.
+fn assert_kept(outputs: &[&str], files: [&str; 2], words: &str) {
+    let [log, dbc] = files;
+    let before = files.map(|file| fs::read(file).unwrap());
+    let output = xt28(&[&["gap", "diagnose", log, "--dbc", dbc], outputs].concat());
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains(words), "{talk}");
+    assert_eq!(files.map(|file| fs::read(file).unwrap()), before);
+}
+
+#[test]
+fn no_answer_is_written_over_what_was_asked_about_nor_over_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let [copy, dbc, effects, next, script, out] =
+        ["a.log", "a.dbc", "e.toml", "n.toml", "n.script.toml", "out"]
+            .map(|name| path(folder.path(), name));
+    fs::copy(log(), &copy).unwrap();
+    fs::copy(DBC, &dbc).unwrap();
+    fs::write(&effects, "").unwrap();
+    let files = [copy.as_str(), dbc.as_str()];
+    assert_kept(&["--json", &dbc], files, "this command reads that file; give --json another");
+    assert_kept(&["--report", &copy], files, "give --report another");
+    let both = ["--effects", effects.as_str(), "--overlay", &effects];
+    assert_kept(&both, files, "give --overlay another");
+    assert_kept(&["--json", &out, "--report", &out], files, "would write the same file");
+    assert_kept(&["--next", &next, "--overlay", &script], files, "would write the same file");
+    assert!(!fs::exists(&out).unwrap() && !fs::exists(&next).unwrap());
+}

@@ -10,7 +10,7 @@ use xt28_gap_check::{
     Examination, Examined, Options, Report, Source, Withheld, curve, one_of_each, sweep,
 };
 
-use crate::files::{writable, write};
+use crate::files::{Outputs, write};
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -53,12 +53,18 @@ pub(crate) struct Check {
 impl Check {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         let seal = self.json.as_ref().map(|json| json.with_extension("seal"));
-        let files = [&self.json, &seal, &self.curve];
-        writable(files.into_iter().flatten().map(PathBuf::as_path))?;
         let sources = match &self.set {
             Some(folder) => Source::in_folder(folder)?,
             None => Source::drawn(self.cases.get(), self.seed),
         };
+        let outputs = Outputs::new([
+            ("--json", self.json.as_ref()),
+            ("--json, for its seal,", seal.as_ref()),
+            ("--curve", self.curve.as_ref()),
+        ]);
+        let read: Vec<Vec<PathBuf>> =
+            sources.iter().map(Source::files).collect::<Result<_, _>>()?;
+        outputs.ensure_apart(read.iter().flatten().map(PathBuf::as_path))?;
         let withheld = match &self.set {
             _ if !self.sweep => Vec::new(),
             Some(_) => sources.clone(),

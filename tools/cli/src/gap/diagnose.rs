@@ -14,8 +14,8 @@ use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
 use super::about;
-use super::drive::{ensure_free, write_drive};
-use crate::files::{writable, write};
+use super::drive::{ensure_free, script_beside, write_drive};
+use crate::files::{Outputs, write};
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -83,8 +83,7 @@ pub(crate) struct Diagnose {
 
 impl Diagnose {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let files = [&self.next, &self.json, &self.report, &self.overlay];
-        writable(files.into_iter().flatten().map(PathBuf::as_path))?;
+        self.ensure_outputs_apart()?;
         self.next.as_deref().map_or(Ok(()), ensure_free)?;
         let start = Instant::now();
         let bar = progress_bar();
@@ -106,6 +105,22 @@ impl Diagnose {
         say!("{}", page::text(&diagnosis));
         self.write(&inquiry, &diagnosis)?;
         Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    /// Refuses files to write that this reads, or that are one: an answer must not cost a log.
+    fn ensure_outputs_apart(&self) -> Result<(), Failure> {
+        let script = self.next.as_deref().map(script_beside);
+        let outputs = Outputs::new([
+            ("--next", self.next.as_ref()),
+            ("--next, for its script,", script.as_ref()),
+            ("--json", self.json.as_ref()),
+            ("--report", self.report.as_ref()),
+            ("--overlay", self.overlay.as_ref()),
+        ]);
+        let files = [&self.mapping, &self.machine, &self.effects, &self.terrain];
+        let about = about(&self.logs, self.about.as_ref());
+        let known = files.into_iter().flatten().chain([&self.dbc]).chain(&about);
+        outputs.ensure_apart(self.logs.iter().chain(known).map(PathBuf::as_path))
     }
 
     /// The question, and what was taken for granted in asking it.

@@ -34,14 +34,29 @@ impl Drive {
         };
         let manoeuvre = Manoeuvre::find(name)
             .ok_or_else(|| format!("there is no drive '{name}'; there are {}", names()))?;
-        let out = self.out.clone().unwrap_or_else(|| format!("{name}.toml").into());
+        let out = match &self.out {
+            Some(out) => out.clone(),
+            None => unnamed(name)?,
+        };
         write_drive(&out, &manoeuvre, "shows what a diagnosis missed")?;
         Ok(Verdict::Positive)
     }
 }
 
+/// Where a drive goes that nobody gave a file for: what is there under its name must be a drive too.
+fn unnamed(name: &str) -> Result<PathBuf, Failure> {
+    let out = PathBuf::from(format!("{name}.toml"));
+    match fs::read_to_string(&out) {
+        Ok(text) if !Manoeuvre::is_scenario(&text) => {
+            let problem = "is there and is not a drive; name another file with --out";
+            Err(format!("{} {problem}", out.display()).into())
+        }
+        _ => Ok(out),
+    }
+}
+
 /// Where the script of a scenario at `path` goes.
-fn script_beside(path: &Path) -> PathBuf {
+pub(super) fn script_beside(path: &Path) -> PathBuf {
     path.with_extension("script.toml")
 }
 

@@ -97,6 +97,19 @@ impl Source {
         }
     }
 
+    /// The files that it is read from.
+    ///
+    /// # Errors
+    /// [`CheckError`] for a folder whose `about.toml` cannot be read.
+    pub fn files(&self) -> Result<Vec<PathBuf>, CheckError> {
+        let Self::Folder { folder, answer } = self else { return Ok(Vec::new()) };
+        let path = folder.join(ABOUT);
+        let about = About::load(&path)?;
+        let beside = about.run.iter().map(|run| &run.file).chain(&about.dbc);
+        let beside: Vec<PathBuf> = beside.map(|file| folder.join(file)).collect();
+        Ok([vec![path, answer.clone()], beside].concat())
+    }
+
     /// Text of its answer, to be sealed and not to be looked at.
     ///
     /// # Errors

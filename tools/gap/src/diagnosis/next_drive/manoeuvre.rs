@@ -34,12 +34,20 @@ struct Step {
 
 /// What the first line of every script ends with.
 const PURPOSE: &str = ", to tell causes apart.";
+/// What every scenario begins with.
+const GOOD_FOR: &str = "# What this drive leaves in the log ";
 
 impl Manoeuvre {
     /// Whether `text` is a script that [`Self::script`] made, of whichever drive.
     #[must_use]
     pub fn wrote(text: &str) -> bool {
         text.lines().next().is_some_and(|line| line.starts_with('#') && line.ends_with(PURPOSE))
+    }
+
+    /// Whether `text` is a scenario that [`Self::scenario`] made, of whichever drive.
+    #[must_use]
+    pub fn is_scenario(text: &str) -> bool {
+        text.starts_with(GOOD_FOR)
     }
 
     /// All of them: a ramp is not among them, for it needs one to be built.
@@ -74,7 +82,7 @@ impl Manoeuvre {
     #[must_use]
     pub fn scenario(&self, script: &str, good_for: &str) -> String {
         format!(
-            "# What this drive leaves in the log {good_for}.\ntitle = \"{}, a test drive\"\npolicy = \"script:{script}\"\nduration_s = {:.1}\n\n# The machine comes through it on its wheels.\n[[expect]]\ncarries-weight = {{ from_s = {:.1}, to_s = {:.1}, within_percent = 5.0 }}\n",
+            "{GOOD_FOR}{good_for}.\ntitle = \"{}, a test drive\"\npolicy = \"script:{script}\"\nduration_s = {:.1}\n\n# The machine comes through it on its wheels.\n[[expect]]\ncarries-weight = {{ from_s = {:.1}, to_s = {:.1}, within_percent = 5.0 }}\n",
             self.name,
             self.end_s + 2.0,
             self.end_s,

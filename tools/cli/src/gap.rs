@@ -3,6 +3,7 @@
 mod check;
 mod diagnose;
 mod drive;
+mod remarks;
 mod r#where;
 
 use std::path::{Path, PathBuf};

@@ -31,7 +31,7 @@ fn log(folder: &Path, name: &str) -> (FieldLog, Terrain) {
     (FieldLog::load(&path, &decoder, false).unwrap(), terrain)
 }
 
-fn gaps(folder: &Path, names: &[&str]) -> Vec<(Generator, f64)> {
+fn gaps(folder: &Path, names: &[&str]) -> Vec<(Generator, Option<f64>)> {
     let runs: Vec<Signals> = names
         .iter()
         .map(|name| {
@@ -48,7 +48,7 @@ fn a_sound_machine_leaves_nothing_to_explain() {
     let Some(data) = field_data() else { return };
     let names = ["run-1-arm_step.log.gz", "run-3-s_turn.log.gz", "run-4-straight.log.gz"];
     for (generator, gap) in gaps(&data.join("dev/dev-05"), &names) {
-        assert!(gap < 10.0, "{generator}: {gap}");
+        assert!(gap.is_none_or(|gap| gap < 3.2), "{generator}: {gap:?}");
     }
 }
 
@@ -59,11 +59,11 @@ fn leaking_front_arms_show_on_the_front_arms() {
     let gaps = gaps(&data.join("dev/dev-01"), &["run-1-arm_step.log.gz"]);
     let of = |wheel| {
         let found = gaps.iter().find(|(generator, _)| *generator == Generator::ArmStroke(wheel));
-        found.expect("every arm is watched").1
+        found.and_then(|(_, gap)| *gap).expect("every arm is watched")
     };
     for leaking in [Wheel::Fr, Wheel::Fl] {
         for sound in [Wheel::Mr, Wheel::Ml, Wheel::Br, Wheel::Bl] {
-            assert!(of(leaking) > 20.0 * of(sound), "{leaking} {sound}: {gaps:?}");
+            assert!(of(leaking) > 4.5 * of(sound), "{leaking} {sound}: {gaps:?}");
         }
     }
 }

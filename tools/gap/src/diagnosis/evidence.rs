@@ -261,16 +261,18 @@ impl<'a> Evidence<'a> {
         all
     }
 
-    /// What each generator leaves under the base: mean square of its signals in units of their floors.
+    /// What each generator leaves under the base: root mean square of its signals in units of their
+    /// floors; `None` where nothing was measured that it could be told by.
     #[must_use]
-    pub fn gaps(&self) -> Vec<(Generator, f64)> {
+    pub fn gaps(&self) -> Vec<(Generator, Option<f64>)> {
         let left = self.left(&self.base.effects);
         let gap = |watch: &Watch| {
             let own = left.iter().filter(|left| left.generator == watch.stack.generator);
-            let (squares, samples) = own.fold((0.0, 0.0), |(squares, samples), left| {
+            let (squares, samples) = own.fold((0.0, 0.0_f64), |(squares, samples), left| {
                 (squares + left.square * left.samples, samples + left.samples)
             });
-            (watch.stack.generator, squares / f64::max(samples, 1.0))
+            let gap = (samples > 0.0).then(|| (squares / samples.max(1.0)).sqrt());
+            (watch.stack.generator, gap)
         };
         self.watches.iter().map(gap).collect()
     }

@@ -78,6 +78,17 @@ impl Signal {
     }
 }
 
+impl Signal {
+    /// Its name, with its wheel where it is one of six and its generator is not.
+    #[must_use]
+    pub fn with_wheel(self) -> String {
+        match self {
+            Self::Contact(wheel) | Self::WheelSpeed(wheel) => format!("{self}, {wheel}"),
+            _ => self.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for Signal {
     /// The signal's name in verdicts.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -103,5 +114,17 @@ impl fmt::Display for Signal {
             Self::BusPlace => "commands out of their places",
             Self::BusUneven => "intervals between commands",
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_signal_of_six_is_told_with_its_wheel() {
+        assert_eq!(Signal::Contact(Wheel::Fl).with_wheel(), "touch of the ground, FL");
+        assert_eq!(Signal::WheelSpeed(Wheel::Br).with_wheel(), "wheel speed, BR");
+        assert_eq!(Signal::Stroke.with_wheel(), "stroke");
     }
 }

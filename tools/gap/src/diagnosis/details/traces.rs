@@ -66,7 +66,12 @@ fn trace(inquiry: &Inquiry, pair: &Pair, i: usize) -> Trace {
     let per_floor = if unit == FLOORS { 1.0 } else { before.signal.floor().sigma * per_si };
     let error = |values: &Samples| values.iter().map(|value| value * per_floor).collect();
     Trace {
-        title: format!("{}: {}, {}", file_name(run.log.name()), pair.generator, before.signal),
+        title: format!(
+            "{}: {}, {}",
+            file_name(run.log.name()),
+            pair.generator,
+            before.signal.with_wheel()
+        ),
         unit,
         measured: measured.map(|samples| thin(&samples, per_si)),
         before: error(&before.values),

@@ -246,13 +246,14 @@ fn is_right(case: &Judged) -> bool {
 
 fn cell(score: &Score) -> String {
     // Sums of rounding errors would print as -0.00.
-    let [low, high] = score.interval.map(|end| if end.abs() < 5e-3 { 0.0 } else { end });
+    let shown = |figure: f64| if figure.abs() < 5e-3 { 0.0 } else { figure };
+    let ([low, high], value) = (score.interval.map(shown), shown(score.value));
     if score.count == 0 {
         "-".to_owned()
-    } else if score.value >= 10.0 {
-        format!("{:.1} [{low:.1} {high:.1}] {}", score.value, score.count)
+    } else if value >= 10.0 {
+        format!("{value:.1} [{low:.1} {high:.1}] {}", score.count)
     } else {
-        format!("{:.2} [{low:.2} {high:.2}] {}", score.value, score.count)
+        format!("{value:.2} [{low:.2} {high:.2}] {}", score.count)
     }
 }
 

@@ -9,6 +9,7 @@ mod brief;
 mod chart;
 mod colour;
 mod engineer;
+mod headline;
 mod heat;
 mod horizon;
 mod html;
@@ -19,6 +20,6 @@ mod text;
 mod trace;
 mod words;
 
+pub use headline::headline;
 pub use html::{Subject, html};
 pub use text::text;
-pub use words::headline;

@@ -5,12 +5,18 @@ mod made_up;
 use std::path::Path;
 
 use made_up::{signals, swinging};
-use xt28_gap::diagnosis::{Cause, Diagnosis, Estimate, FieldRun, Inquiry, Verdict, next_drive};
+use xt28_gap::diagnosis::{
+    Cause, Diagnosis, Estimate, FieldRun, Inquiry, ShareOf, Verdict, next_drive,
+};
 use xt28_gap::{Decoder, FieldLog, Mapping};
 use xt28_machine::Machine;
 use xt28_sim::effects::find;
 
 fn inquiry() -> Inquiry {
+    inquiry_of(&["a.log"])
+}
+
+fn inquiry_of(names: &[&str]) -> Inquiry {
     let decoder =
         Decoder::parse(include_str!("field.dbc"), Path::new("field.dbc"), &Mapping::default());
     let frames = [
@@ -25,9 +31,13 @@ fn inquiry() -> Inquiry {
         "0CFF5229#FE0310C0FF020080",
     ];
     let text: String = frames.iter().map(|frame| format!("(1.0) can0 {frame}\n")).collect();
-    let log = FieldLog::read(text.as_bytes(), "a.log", &decoder.unwrap(), false).unwrap();
+    let decoder = decoder.unwrap();
     let [signals] = signals(&swinging());
-    Inquiry::new(Machine::xt28(), vec![FieldRun { log, signals, fit: true }])
+    let run = |name: &&str| {
+        let log = FieldLog::read(text.as_bytes(), name, &decoder, false).unwrap();
+        FieldRun { log, signals: signals.clone(), fit: true }
+    };
+    Inquiry::new(Machine::xt28(), names.iter().map(run).collect())
 }
 
 fn cause(name: &str, probability: f64, value: f64) -> Cause {
@@ -48,10 +58,14 @@ fn diagnosis(causes: Vec<Cause>) -> Diagnosis {
     Diagnosis {
         verdict: Verdict::Effect,
         places: Vec::new(),
+        share_of: ShareOf::Squares,
+        unexplained: None,
         causes,
         probability_none: 0.0,
         probability_unknown: 0.0,
         together: None,
+        held_out_runs: Vec::new(),
+        looked_ahead: false,
         next: None,
         not_testable: Vec::new(),
         notes: Vec::new(),
@@ -74,4 +88,28 @@ fn a_late_joint_and_a_slow_one_are_told_apart_in_a_bend() {
 #[test]
 fn without_causes_there_is_nothing_to_tell_apart() {
     assert!(next_drive(&inquiry(), &diagnosis(Vec::new())).unwrap().is_none());
+}
+
+#[test]
+fn what_is_sure_needs_no_drive_nor_does_what_has_no_likely_rival() {
+    let of = |causes, none| {
+        let diagnosis = Diagnosis { probability_none: none, ..diagnosis(causes) };
+        next_drive(&inquiry(), &diagnosis).unwrap()
+    };
+    let two = |a, b| vec![cause("steer-delay", a, 0.3), cause("steer-lag", b, 0.3)];
+    assert!(of(two(0.97, 0.02), 0.0).is_none(), "one is sure");
+    assert!(of(two(0.8, 0.005), 0.005).is_none(), "the rest is in no catalogue");
+    assert!(of(two(0.005, 0.003), 0.99).is_none(), "the machine is sound");
+    let (next, _) = of(two(0.6, 0.005), 0.3).expect("a cause or none");
+    assert_eq!(next.separates, ["steer-delay", "none"]);
+}
+
+#[test]
+fn a_drive_that_was_made_is_not_asked_for_again() {
+    let rivals = vec![cause("steer-delay", 0.6, 0.3), cause("steer-lag", 0.3, 0.3)];
+    let inquiry = inquiry_of(&["b/run-2-s_turn.log.gz", "b/run-3-mixed.log.gz"]);
+    let next = next_drive(&inquiry, &diagnosis(rivals)).unwrap();
+    if let Some((next, _)) = next {
+        assert!(!["s-turn", "mixed"].contains(&next.manoeuvre.as_str()), "{}", next.manoeuvre);
+    }
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use made_up::{signals, swinging};
 use xt28_gap::diagnosis::{
-    Cause, Details, Diagnosis, Estimate, FieldRun, Inquiry, Next, NotTestable, Place, Shrink,
-    Together, Verdict,
+    Cause, Details, Diagnosis, Estimate, FieldRun, Inquiry, Next, NotTestable, Place, ShareOf,
+    Shrink, Together, Unexplained, Verdict,
 };
 use xt28_gap::page::{Subject, headline, html, text};
 use xt28_gap::{Decoder, FieldLog, Mapping};
@@ -63,6 +63,7 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
     };
     let place = |block, scope: &str, gap_over_noise| Place {
         block,
+        part: "stance",
         scope: scope.parse().unwrap(),
         residual: HOSTILE.to_owned(),
         gap_over_noise,
@@ -75,6 +76,8 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
             place(Block::Steering, "all", 2.0),
             place(Block::Payload, "all", 0.0),
         ],
+        share_of: ShareOf::Machine,
+        unexplained: None,
         causes: vec![cause("arm-delay", 0.93), cause("leakage-drift", 0.71)],
         probability_none: 0.01,
         probability_unknown: 0.02,
@@ -84,6 +87,8 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
             black_box: shrink(),
             held_out_runs: vec![HOSTILE.to_owned()],
         }),
+        held_out_runs: vec![HOSTILE.to_owned()],
+        looked_ahead: true,
         next: Some(Next {
             manoeuvre: HOSTILE.to_owned(),
             separates: vec!["arm-delay", "valve-lag"],
@@ -165,18 +170,20 @@ fn words_for_a_terminal_say_what_the_page_says() {
         "0.210 (0.190 to 0.230)",
         "not to be told from valve-lag",
         "-20 % (60 % to 85 %) over whole runs",
-        "tells arm-delay, valve-lag apart, 3.1 nats expected",
+        "tells arm-delay, valve-lag apart, 3.1 nats expected (odds of 22 to 1)",
+        "share: of the whole machine's gap 5 s ahead",
         "steer-lag",
     ] {
         assert!(words.contains(part), "{part}: {words}");
     }
-    let none = text(&diagnosis(Verdict::None));
+    let without = |verdict| Diagnosis { causes: Vec::new(), ..diagnosis(verdict) };
+    let none = text(&without(Verdict::None));
     let nothing = "Nothing beyond ordinary tolerances in what these logs can show (probability 1 %); \
                    effects that they cannot: 1.";
     assert!(none.starts_with(nothing), "{none}");
-    let all = text(&Diagnosis { not_testable: Vec::new(), ..diagnosis(Verdict::None) });
+    let all = text(&Diagnosis { not_testable: Vec::new(), ..without(Verdict::None) });
     assert!(all.starts_with("Nothing beyond ordinary tolerances (probability 1 %)."), "{all}");
-    let unknown = text(&diagnosis(Verdict::Unknown));
+    let unknown = text(&without(Verdict::Unknown));
     assert!(unknown.contains("no effect of the catalogue explains"), "{unknown}");
 }
 
@@ -196,6 +203,7 @@ fn where_nothing_is_likelier_than_not_the_likeliest_are_told() {
 fn a_shrink_on_fitted_runs_is_not_said_to_be_on_others() {
     let mut fitted = diagnosis(Verdict::Effect);
     fitted.together.iter_mut().for_each(|together| together.held_out_runs.clear());
+    fitted.held_out_runs.clear();
     let words = text(&fitted);
     assert!(
         words.contains("shrinks on the runs that were fitted, as none was held out"),
@@ -203,8 +211,9 @@ fn a_shrink_on_fitted_runs_is_not_said_to_be_on_others() {
     );
     assert!(!words.contains("not fitted") && !words.contains("held out:"), "{words}");
     let page = page_of(&fitted);
-    assert!(page.contains("on the very drives that the cause was found on"));
-    assert!(!page.contains("drives that were not used"));
+    assert!(page.contains("on the runs that were fitted, as none was held out."));
+    assert!(page.contains("shrinks the gap by, on the runs that were fitted"));
+    assert!(words.contains("over whole runs (on the runs that were fitted)"), "{words}");
 }
 
 #[test]
@@ -227,4 +236,77 @@ fn wheels_that_cannot_be_told_apart_are_not_all_listed_in_the_headline() {
     let words = "arm-delay at wheels that these logs do not tell apart, all wheels foremost";
     assert!(headline(&open).starts_with(words), "{}", headline(&open));
     assert!(text(&open).contains("all wheels (30 %), the left side (30 %), wheel FR (30 %)"));
+}
+
+#[test]
+fn the_likeliest_wheels_are_foremost_whichever_fit_best() {
+    let mut open = diagnosis(Verdict::Effect);
+    let scopes = [("front", 0.24), ("left", 0.39), ("all", 0.37)];
+    open.causes[0].scopes = scopes.map(|(scope, share)| (scope.parse().unwrap(), share)).to_vec();
+    assert!(headline(&open).contains("the left side foremost"), "{}", headline(&open));
+    let words = text(&open);
+    assert!(
+        words.contains("the left side (39 %), all wheels (37 %), the front axle (24 %)"),
+        "{words}"
+    );
+    assert!(page_of(&open).contains("at the front axle</small>"), "whose size that is");
+}
+
+#[test]
+fn what_is_unknown_is_sought_where_the_objection_is() {
+    let mut unknown = diagnosis(Verdict::Unknown);
+    unknown.causes.clear();
+    unknown.unexplained = Some(Unexplained {
+        block: Block::Payload,
+        part: "stance",
+        scope: "all".parse().unwrap(),
+        residual: "roll".to_owned(),
+    });
+    assert!(headline(&unknown).contains("foremost in roll (prob"), "{}", headline(&unknown));
+    assert!(page_of(&unknown).contains("Look at what on the machine makes its roll:"));
+}
+
+#[test]
+fn a_verdict_that_is_hardly_likelier_than_another_is_hedged() {
+    let mut open = diagnosis(Verdict::Unknown);
+    open.causes.clear();
+    (open.probability_unknown, open.probability_none) = (0.52, 0.48);
+    let words = headline(&open);
+    assert!(words.starts_with("Something may be the matter"), "{words}");
+    let rest = "(probability 52 %), or nothing beyond ordinary tolerances (probability 48 %): these logs \
+                do not tell which.";
+    assert!(words.ends_with(rest), "{words}");
+    (open.verdict, open.probability_unknown, open.probability_none) = (Verdict::None, 0.44, 0.56);
+    open.not_testable.clear();
+    let words = headline(&open);
+    assert!(
+        words.starts_with("Nothing beyond ordinary tolerances (probability 56 %), or some"),
+        "{words}"
+    );
+    assert!(page_of(&open).contains("these drives do not tell which it is"));
+}
+
+#[test]
+fn what_is_all_but_ruled_out_is_told_from_nothing() {
+    let mut sure = diagnosis(Verdict::Effect);
+    sure.causes.iter_mut().for_each(|cause| cause.probability = 0.004);
+    let words = text(&sure);
+    assert!(!words.contains("not to be told from"), "{words}");
+    let json = serde_json::to_value(&sure).unwrap();
+    assert_eq!(json["causes"][0]["class"], serde_json::json!(["arm-delay"]));
+    let likely = serde_json::to_value(diagnosis(Verdict::Effect)).unwrap();
+    assert_eq!(likely["causes"][0]["class"], serde_json::json!(["arm-delay", "valve-lag"]));
+    assert_eq!(likely["share_of"], "machine");
+}
+
+#[test]
+fn what_was_not_asked_is_not_said_to_be_settled() {
+    let mut unasked = diagnosis(Verdict::None);
+    unasked.causes.clear();
+    (unasked.next, unasked.looked_ahead) = (None, false);
+    unasked.not_testable.clear();
+    let page = page_of(&unasked);
+    assert!(page.contains("Which drive would tell causes apart was not asked."));
+    assert!(!page.contains("There is no gap"));
+    assert!(page.contains("lock-stiffness of each arm ±2 %"), "tolerances of the arms count too");
 }

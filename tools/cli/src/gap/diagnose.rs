@@ -15,6 +15,7 @@ use xt28_sim::effects::Overlay;
 
 use super::about;
 use super::drive::{ensure_free, script_beside, write_drive};
+use super::remarks::{Given, remarks};
 use crate::files::{Outputs, write};
 use crate::say::say;
 use crate::{Failure, Verdict};
@@ -26,7 +27,9 @@ use crate::{Failure, Verdict};
 /// "unknown". Exit status: 0 nothing beyond ordinary tolerances; 1 an effect, or something unknown;
 /// 2 it could not be done.
 ///
-/// RUN is a file name, the number of a log in the order given, or a scenario of about.toml. Without
+/// RUN is a file name with or without its ending, a scenario of about.toml, or a number: of a log in the
+/// order given, or that in run-3-mixed.log; one that may be either is refused. --fit alone holds out all
+/// other runs, --held alone fits on all others; with both, runs that neither names are left out. Without
 /// --fit and --held, about.toml says what is fitted on; without it, the last third is held out.
 #[derive(Args)]
 pub(crate) struct Diagnose {
@@ -51,10 +54,10 @@ pub(crate) struct Diagnose {
     /// What is known of the logs (TOML); about.toml beside the first log, if there
     #[arg(long, value_name = "FILE")]
     about: Option<PathBuf>,
-    /// Runs to fit causes on
+    /// Runs to fit causes on; without --held, the others are held out
     #[arg(long, value_name = "RUN", value_delimiter = ',')]
     fit: Vec<String>,
-    /// Runs to hold out, to judge causes on
+    /// Runs to hold out, to judge causes on; without --fit, the others are fitted
     #[arg(long, value_name = "RUN", value_delimiter = ',')]
     held: Vec<String>,
     /// Take a log that ends in the middle of a line as ending before it
@@ -136,7 +139,9 @@ impl Diagnose {
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let choice = set.choose(&self.fit, &self.held)?;
         let mut notes = vec![split(&set, &choice)];
-        notes.extend(set.notes());
+        let (about, machine_file) = (about.as_deref(), self.machine.as_deref());
+        let given = Given { about, dbc: &self.dbc, machine: machine_file };
+        notes.extend(remarks(&set, &given)?);
         let mut inquiry =
             Inquiry::new(machine, set.into_field_runs(&choice, self.accept_wheel_order)?);
         inquiry.believed = believed.effects();
@@ -147,6 +152,7 @@ impl Diagnose {
     /// Says what to drive next, and writes it: what tells the causes apart or, where there are none, what
     /// shows most that these logs do not.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
+        diagnosis.looked_ahead = true;
         let (manoeuvre, good_for) = if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)?
         {
             let good_for = format!("tells apart {}", next.separates.join(", "));
@@ -154,14 +160,19 @@ impl Diagnose {
             (manoeuvre, good_for)
         } else if let Some((manoeuvre, effects)) = untested_drive(diagnosis) {
             let name = manoeuvre.name;
+            let some =
+                if effects == 1 { "an effect".to_owned() } else { format!("{effects} effects") };
             diagnosis.notes.push(format!(
-                "There are no causes to tell apart. {name} would test {effects} effects that these logs do not."
+                "No scripted drive is worth it to tell likely causes apart. {name} would test {some} that \
+                 these logs do not."
             ));
             (manoeuvre, "tests what no log did".to_owned())
         } else {
-            let nothing = "There are no causes to tell apart, and no effect is untested: no drive would \
-                           tell more.";
-            diagnosis.notes.push(nothing.to_owned());
+            let nothing = "No scripted drive is worth it: none of those not made would tell likely causes \
+                           apart, and no effect is untested.";
+            let unwritten =
+                self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
+            diagnosis.notes.push(format!("{nothing}{}", unwritten.unwrap_or_default()));
             return Ok(());
         };
         let Some(path) = &self.next else { return Ok(()) };

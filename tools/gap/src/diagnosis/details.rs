@@ -130,6 +130,6 @@ const fn wheel_of(generator: Generator) -> Option<Wheel> {
 }
 
 /// The last part of a path, whichever way its folders are parted.
-fn file_name(path: &str) -> String {
+pub(super) fn file_name(path: &str) -> String {
     path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
 }

@@ -135,6 +135,21 @@ impl Generator {
         }
     }
 
+    /// What it is called, without its wheel or joint.
+    #[must_use]
+    pub const fn part(self) -> &'static str {
+        match self {
+            Self::ArmStroke(_) => "arm",
+            Self::ArmEcu(_) => "arm controller",
+            Self::Joint(_) => "joint",
+            Self::SteerEcu(_) => "steering controller",
+            Self::Drive => "drive",
+            Self::Stance => "stance",
+            Self::Travel => "travel",
+            Self::Bus => "bus",
+        }
+    }
+
     /// Its residuals on one run, in units of their floors.
     #[must_use]
     pub fn residuals(self, s: &Signals, machine: &Machine, effects: &Effects) -> Vec<Residual> {
@@ -233,15 +248,11 @@ fn thin(raw: &Samples, sigma: f64) -> Samples {
 impl fmt::Display for Generator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const JOINT: [&str; 2] = ["front", "rear"];
+        let part = self.part();
         match self {
-            Self::ArmStroke(w) => write!(f, "arm {w}"),
-            Self::ArmEcu(w) => write!(f, "arm controller {w}"),
-            Self::Joint(j) => write!(f, "joint {}", JOINT[*j]),
-            Self::SteerEcu(j) => write!(f, "steering controller {}", JOINT[*j]),
-            Self::Drive => f.write_str("drive"),
-            Self::Stance => f.write_str("stance"),
-            Self::Travel => f.write_str("travel"),
-            Self::Bus => f.write_str("bus"),
+            Self::ArmStroke(w) | Self::ArmEcu(w) => write!(f, "{part} {w}"),
+            Self::Joint(j) | Self::SteerEcu(j) => write!(f, "{part} {}", JOINT[*j]),
+            Self::Drive | Self::Stance | Self::Travel | Self::Bus => f.write_str(part),
         }
     }
 }

@@ -29,6 +29,7 @@ pub use refit::Refit;
 
 use self::squares::Squares;
 use self::twin::{Course, Stretch};
+use super::details::file_name;
 use super::inquiry::Inquiry;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
@@ -79,11 +80,11 @@ impl HowFar {
         Ok(how_far)
     }
 
-    /// Runs that were not fitted, which a shrink is judged on; none where all were.
+    /// File names of the runs that were not fitted, which a shrink is judged on; none where all were.
     #[must_use]
     pub fn held_out_runs(&self) -> Vec<String> {
         let each = self.courses.iter().zip(&self.fit).filter(|(_, fit)| !**fit);
-        each.map(|(course, _)| course.signals.name.clone()).collect()
+        each.map(|(course, _)| file_name(&course.signals.name)).collect()
     }
 
     /// How far `effects` shrink the gap of what is believed.

@@ -11,16 +11,17 @@ mod objection;
 mod places;
 
 use super::candidates::Candidate;
+use super::details::file_name;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
-use super::verdict::{Diagnosis, Verdict};
+use super::verdict::{Diagnosis, ShareOf, Verdict};
 use super::wheel_order::axles_alike;
 use causes::causes;
 use objection::Objection;
-use places::places;
+use places::{places, unexplained};
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
 const SOMETHING: [f64; 2] = [18.0, 4.0];
@@ -91,10 +92,16 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let mut diagnosis = Diagnosis {
         verdict,
         places: places(apart, &findings.after),
+        share_of: ShareOf::Squares,
+        unexplained: (verdict == Verdict::Unknown)
+            .then(|| findings.objection().at.map(unexplained))
+            .flatten(),
         causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,
         together: None,
+        held_out_runs: held_out_runs(inquiry),
+        looked_ahead: false,
         next: None,
         not_testable: not_testable(&runs, &inquiry.catalogue),
         notes: notes(inquiry, findings, verdict),
@@ -106,10 +113,15 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     diagnosis
 }
 
+/// File names of the runs that were not fitted.
+fn held_out_runs(inquiry: &Inquiry) -> Vec<String> {
+    let held = inquiry.runs.iter().filter(|run| !run.fit);
+    held.map(|run| file_name(run.log.name())).collect()
+}
+
 fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
-    let held: Vec<_> = inquiry.runs.iter().filter(|run| !run.fit).collect();
     let mut notes = Vec::new();
-    if held.is_empty() {
+    if held_out_runs(inquiry).is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
@@ -127,10 +139,10 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
         })
         .collect();
     if verdict == Verdict::Unknown && !believed.is_empty() {
-        let Objection { times, why } = findings.objection();
+        let Objection { times, why, .. } = findings.objection();
         notes.push(format!(
-            "{}, the likeliest answer, is not believed, because {why}: {times:.1} times the most that a \
-             right one would",
+            "{} fits best of all in the catalogue, but is not believed, because {why}: {times:.1} times \
+             the most that a right answer would",
             believed.join(" beside ")
         ));
     }
@@ -199,6 +211,32 @@ mod tests {
         let [.., why] = &diagnosis.notes[..] else { panic!("it says why") };
         assert!(why.contains("15.8 floors of 20.0"), "{why}");
         assert!(why.starts_with("leakage-drift (all)"), "{why}");
+        assert!(!why.contains("likeliest"), "its probability is next to nothing: {why}");
+    }
+
+    #[test]
+    fn what_is_unknown_is_where_the_objection_is_and_not_where_the_gap_is_largest() {
+        let of = |generator, signal, squares| {
+            let left = left(squares);
+            left.into_iter().map(|l| Left { generator, signal, ..l }).collect::<Vec<_>>()
+        };
+        let both = |stroke, roll| {
+            let stroke = of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, stroke);
+            [stroke, of(Generator::Stance, Signal::Roll, roll)].concat()
+        };
+        let before = both(900.0, 100.0);
+        let findings = Findings {
+            unbent: before.clone(),
+            alone: before.clone(),
+            apart: before,
+            single: vec![candidate("leakage-drift", 900.0)],
+            after: both(1.0, 100.0),
+            ..Findings::default()
+        };
+        let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
+        assert_eq!(diagnosis.places[0].part, "arm");
+        let spot = diagnosis.unexplained.expect("a signal speaks against it");
+        assert_eq!((spot.part, spot.residual.as_str()), ("stance", "roll"));
     }
 
     #[test]

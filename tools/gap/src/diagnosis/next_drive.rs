@@ -12,18 +12,21 @@ mod manoeuvre;
 use rayon::prelude::*;
 use xt28_sim::{Effects, Solver, Terrain};
 
+use super::details::file_name;
 use super::generator::Generator;
 use super::inquiry::Inquiry;
 use super::signals::Signals;
-use super::verdict::{Cause, Diagnosis, Next};
+use super::verdict::{Cause, Diagnosis, Next, WORTH_TELLING};
 use crate::{FieldLog, GapError, Replay};
 
 pub use manoeuvre::Manoeuvre;
 
 /// Causes that are told apart, at most.
 const RIVALS: usize = 3;
-/// A cause below this probability is no rival, unless it is the only one.
-const RIVAL_MIN: f64 = 0.02;
+/// Beyond this probability an answer has no rivals worth a drive.
+const SURE: f64 = 0.95;
+/// A drive that is expected to give less, nats, is not worth its time.
+const WORTH_MIN: f64 = 1.0;
 
 /// A hypothesis in the running.
 struct Rival {
@@ -31,7 +34,8 @@ struct Rival {
     effects: Effects,
 }
 
-/// The manoeuvre worth most, with what it separates; `None` where no two hypotheses remain.
+/// The manoeuvre worth most of those that no run is of already, with what it separates; `None` where no
+/// two hypotheses remain, or none of those would tell them apart.
 ///
 /// # Errors
 /// [`GapError::Command`] where our own bus could not say a manoeuvre's command.
@@ -44,10 +48,13 @@ pub fn next_drive(
         return Ok(None);
     }
     let worth = |manoeuvre: Manoeuvre| Ok((worth(inquiry, &rivals, &manoeuvre)?, manoeuvre));
+    // What a drive that was made could tell, it has told.
+    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(run.log.name(), m.name));
+    let left: Vec<Manoeuvre> = Manoeuvre::all().into_iter().filter(|m| !made(m)).collect();
     let ranked: Vec<(f64, Manoeuvre)> =
-        Manoeuvre::all().into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
+        left.into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
     let best = ranked.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(best.map(|(nats, manoeuvre)| {
+    Ok(best.filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, manoeuvre)| {
         let separates = rivals.iter().map(|rival| rival.name).collect();
         (Next { manoeuvre: manoeuvre.name.to_owned(), separates, nats }, manoeuvre)
     }))
@@ -65,13 +72,24 @@ pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Manoeuvre, usize)> {
     most.filter(|(_, effects)| *effects > 0)
 }
 
+/// Whether the log at `path` is of the drive `name`, by its own name: `run-3-s_turn.log.gz`.
+fn is_of(path: &str, name: &str) -> bool {
+    let file = file_name(path).to_lowercase().replace('_', "-");
+    let stem = file.split('.').next().unwrap_or_default();
+    stem.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('-'))
+}
+
 /// The least certain of the causes stood by, or the likeliest of all, and what may be in its place;
-/// the other causes stood by are believed.
+/// the other causes stood by are believed. Fewer than two where nothing is left to tell apart.
 fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
     let stood: Vec<&Cause> = diagnosis.stood_by().collect();
     let Some(leader) = stood.last().copied().or_else(|| diagnosis.causes.first()) else {
         return Vec::new();
     };
+    let wheels = leader.scopes.first().map_or(1.0, |(_, share)| *share);
+    if leader.probability * wheels > SURE || diagnosis.probability_none > SURE {
+        return Vec::new();
+    }
     let mut base = inquiry.believed.clone();
     let apply = |effects: &mut Effects, cause: &Cause| {
         for estimate in &cause.parameters {
@@ -87,17 +105,18 @@ fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
     let mut rivals: Vec<Rival> = Vec::new();
     let others = diagnosis.causes.iter().filter(|cause| {
         let stands = stood.iter().any(|stood| stood.effect == cause.effect);
-        let likely = cause.probability > RIVAL_MIN || leader.class.contains(&cause.effect.name);
+        let likely = cause.probability >= WORTH_TELLING;
         !stands && cause.effect != leader.effect && likely
     });
-    for cause in std::iter::once(leader).chain(others) {
+    let leading = std::iter::once(leader).filter(|cause| cause.probability >= WORTH_TELLING);
+    for cause in leading.chain(others) {
         if rivals.len() < RIVALS && rivals.iter().all(|rival| rival.name != cause.effect.name) {
             let mut effects = base.clone();
             apply(&mut effects, cause);
             rivals.push(Rival { name: cause.effect.name, effects });
         }
     }
-    if rivals.len() < 2 || diagnosis.probability_none > RIVAL_MIN {
+    if diagnosis.probability_none >= WORTH_TELLING {
         rivals.push(Rival { name: "none", effects: base });
     }
     rivals
@@ -142,4 +161,27 @@ fn apart(inquiry: &Inquiry, signals: &Signals, own: &Effects, other: &Effects) -
             .sum()
     };
     0.5 * Generator::all().into_iter().map(of).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_is_of_the_drive_that_its_name_ends_with() {
+        for (path, drive) in [
+            ("field/run-3-s_turn.log.gz", "s-turn"),
+            ("S-Turn.mcap", "s-turn"),
+            ("day.2/run-2-single_arm.log", "single-arm"),
+        ] {
+            assert!(is_of(path, drive), "{path}");
+        }
+        for (path, drive) in [
+            ("straight-25m.log", "straight"),
+            ("s-turn/run-1.log", "s-turn"),
+            ("unmixed.log", "mixed"),
+        ] {
+            assert!(!is_of(path, drive), "{path}");
+        }
+    }
 }

@@ -11,7 +11,13 @@ pub struct Diagnosis {
     /// Blocks on measured inputs, the gap that says most first.
     #[serde(rename = "where")]
     pub places: Vec<Place>,
+    /// What the places' shares are of.
+    pub share_of: ShareOf,
+    /// The signal that the best of the catalogue leaves open, where something unknown is the matter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unexplained: Option<Unexplained>,
     /// Causes, the likeliest first. Those with a probability above one half are stood by.
+    #[serde(serialize_with = "as_told")]
     pub causes: Vec<Cause>,
     /// Probability that nothing is wrong beyond ordinary tolerances.
     pub probability_none: f64,
@@ -20,6 +26,10 @@ pub struct Diagnosis {
     /// All causes stood by, at once.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub together: Option<Together>,
+    /// Runs that were not fitted, by file name; none where all were.
+    pub held_out_runs: Vec<String>,
+    /// Whether the next test drive was looked for.
+    pub looked_ahead: bool,
     /// Manoeuvre that would tell the most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<Next>,
@@ -43,12 +53,39 @@ pub enum Verdict {
     Unknown,
 }
 
+/// What the shares of places add up to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShareOf {
+    /// The squares of all blocks' gaps on measured inputs, as far as they go beyond noise.
+    Squares,
+    /// The whole machine's gap 5 s ahead, shared out among its blocks by Shapley's value.
+    Machine,
+}
+
+/// A signal that speaks against whatever the catalogue has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// The block.
+    #[serde(serialize_with = "as_text")]
+    pub block: Block,
+    /// Who watches it, as in a place.
+    pub part: &'static str,
+    /// Its wheels.
+    #[serde(serialize_with = "as_text")]
+    pub scope: Scope,
+    /// The signal.
+    pub residual: String,
+}
+
 /// One block on measured inputs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Place {
     /// The block.
     #[serde(serialize_with = "as_text")]
     pub block: Block,
+    /// Who watches it, by the name that it has wherever residuals are shown: "stance", "arm".
+    pub part: &'static str,
     /// Its wheels.
     #[serde(serialize_with = "as_text")]
     pub scope: Scope,
@@ -56,7 +93,7 @@ pub struct Place {
     pub residual: String,
     /// Root mean square of what ordinary tolerances leave, in units of the noise floor.
     pub gap_over_noise: f64,
-    /// Share of the whole machine's gap that it carries, 0 to 1.
+    /// Share that it carries of what [`Diagnosis::share_of`] says, 0 to 1.
     pub share: f64,
 }
 
@@ -64,8 +101,20 @@ impl Place {
     /// Whether its wheels say anything: a joint and the engine have none.
     #[must_use]
     pub fn has_wheels(&self) -> bool {
-        self.block == Block::Arms || self.scope != Scope::All
+        has_wheels(self.block, self.scope)
     }
+}
+
+impl Unexplained {
+    /// The same of it.
+    #[must_use]
+    pub fn has_wheels(&self) -> bool {
+        has_wheels(self.block, self.scope)
+    }
+}
+
+fn has_wheels(block: Block, scope: Scope) -> bool {
+    block == Block::Arms || scope != Scope::All
 }
 
 /// One cause at one scope.
@@ -93,6 +142,20 @@ pub struct Cause {
     /// How far the gap shrinks on runs that were not fitted; on all where all were.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shrink: Option<Shrink>,
+}
+
+/// A cause below this probability is not worth telling from others.
+pub(crate) const WORTH_TELLING: f64 = 0.01;
+
+impl Cause {
+    /// The other effects that these logs cannot tell from this one; none of what is all but ruled out.
+    #[must_use]
+    pub fn alike(&self) -> &[&'static str] {
+        match &self.class[..] {
+            [_, others @ ..] if self.probability >= WORTH_TELLING => others,
+            _ => &[],
+        }
+    }
 }
 
 /// One parameter.
@@ -160,7 +223,8 @@ pub struct Together {
     pub shrink: Shrink,
     /// How far a free model of the residuals without physics, fitted on the same runs, shrinks it.
     pub black_box: Shrink,
-    /// Runs that were not fitted, which the shrinks are of; none where all were: then they are of those.
+    /// File names of the runs that were not fitted, which the shrinks are of; none where all were: then
+    /// they are of those.
     pub held_out_runs: Vec<String>,
 }
 
@@ -189,6 +253,15 @@ pub struct NotTestable {
 
 fn as_text<T: ToString, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {
     to.serialize_str(&value.to_string())
+}
+
+/// Causes, each beside those that it is worth telling it from.
+fn as_told<S: Serializer>(all: &[Cause], to: S) -> Result<S::Ok, S::Error> {
+    let told = |cause: &Cause| {
+        let class = std::iter::once(cause.effect.name).chain(cause.alike().iter().copied());
+        Cause { class: class.collect(), ..cause.clone() }
+    };
+    to.collect_seq(all.iter().map(told))
 }
 
 #[allow(clippy::trivially_copy_pass_by_ref)] // The shape that serde asks for.

@@ -1,19 +1,22 @@
 //! What was taken for granted, what would settle it, what is wrong with the logs.
 
 use super::svg::escape;
-use crate::diagnosis::{Details, Diagnosis, TOLERANCES};
+use super::words::{how_well, rivals};
+use crate::diagnosis::{Details, Diagnosis, Knob};
 
 /// Faults of logs listed.
 const FAULTS: usize = 12;
 
 /// What was assumed.
 pub(super) fn assumed(diagnosis: &Diagnosis, details: &Details) -> String {
-    let tolerances: Vec<String> = TOLERANCES
-        .iter()
-        .map(|tolerance| format!("{} ±{:.0} %", tolerance.name, tolerance.sigma * 100.0))
-        .collect();
     let mut items = vec![
-        format!("The machine file holds but for ordinary tolerances: {}.", tolerances.join(", ")),
+        format!("The machine file holds but for ordinary tolerances: {}.", tolerances()),
+        format!(
+            "Every effect of the catalogue but those of the bus may be there a little on a sound machine: \
+             {} numbers, wheel by wheel, each by a share of its tolerance (`xt28 effects NAME` has the \
+             parameters of each). What they explain together is no cause.",
+            Knob::all().len() - Knob::tolerances().len()
+        ),
         "The ECUs' laws, gains and filters are those of the paper, unless an effect says otherwise."
             .to_owned(),
         "At most two effects are there at once, each alike on all wheels of one scope.".to_owned(),
@@ -23,22 +26,40 @@ pub(super) fn assumed(diagnosis: &Diagnosis, details: &Details) -> String {
     list(&items)
 }
 
+/// What may differ from machine to machine without being an effect, each by a standard deviation.
+fn tolerances() -> String {
+    let mut all: Vec<String> = Vec::new();
+    for knob in Knob::tolerances() {
+        let (name, sigma) = match knob {
+            Knob::Machine(tolerance) => (tolerance.name.to_owned(), tolerance.sigma),
+            // One a wheel, all alike.
+            Knob::Effect(effect, ..) => (format!("{} of each arm", effect.name), knob.tolerance()),
+        };
+        let told = format!("{name} ±{:.0} %", sigma * 100.0);
+        if !all.contains(&told) {
+            all.push(told);
+        }
+    }
+    all.join(", ")
+}
+
 /// What would settle it.
 pub(super) fn settles(diagnosis: &Diagnosis) -> String {
     let mut items = Vec::new();
     if let Some(next) = &diagnosis.next {
         items.push(format!(
-            "Drive {}: it tells {} apart, by {:.1} nats (odds of e to the {:.1}) expected.",
+            "Drive {}: it tells {} apart{}.",
             next.manoeuvre,
-            next.separates.join(" and "),
-            next.nats,
-            next.nats
+            rivals(next, " and "),
+            how_well(next)
         ));
+    } else if !diagnosis.looked_ahead {
+        items.push("Which drive would tell causes apart was not asked.".to_owned());
     }
     items.extend(diagnosis.not_testable.iter().map(|one| {
         format!("{} cannot be tested: {}. Drive {}.", one.effect.name, one.lacks, one.manoeuvre)
     }));
-    if items.is_empty() {
+    if diagnosis.not_testable.is_empty() {
         items.push("Every effect of the catalogue is tested by these runs.".to_owned());
     }
     list(&items)
@@ -51,7 +72,12 @@ pub(super) fn faults(details: &Details) -> String {
         items.push(format!("and {} more", details.faults.len() - FAULTS));
     }
     if items.is_empty() {
-        items.push("None: no frame is lost, late or odd.".to_owned());
+        items.push(
+            "None: no log is cut, no clock steps, no cyclic message is away for more than one and a half \
+             of its periods, and no frame has another length or a value out of its range than the DBC \
+             says. Frames that are late by less are no fault of a log: the bus is a block like others."
+                .to_owned(),
+        );
     }
     list(&items)
 }

@@ -5,10 +5,11 @@ use core::fmt::Write as _;
 use xt28_machine::Machine;
 
 use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
+use super::headline::{headline, is_open, spot};
 use super::machine_view;
 use super::svg::{Anchor, Svg, escape};
-use super::words::{headline, percent, shrinks};
-use crate::diagnosis::{Details, Diagnosis, Verdict};
+use super::words::{judged_on, percent, rivals, shrinks};
+use crate::diagnosis::{Details, Diagnosis, ShareOf, Verdict};
 
 /// The page's body.
 pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
@@ -71,11 +72,7 @@ fn shrinking(diagnosis: &Diagnosis) -> String {
     let single = diagnosis.stood_by().find_map(|cause| cause.shrink);
     let by = diagnosis.together.as_ref().map(|together| together.shrink).or(single);
     let Some(by) = by else {
-        return match diagnosis.verdict {
-            Verdict::Effect => "<p>Not computed.</p>".to_owned(),
-            Verdict::None => "<p>There is no gap to shrink.</p>".to_owned(),
-            Verdict::Unknown => "<p>Nothing known shrinks it.</p>".to_owned(),
-        };
+        return format!("<p>{}</p>", no_shrink(diagnosis));
     };
     let mut svg = Svg::new(350.0, 84.0);
     let rows = [("a tenth of a second", by.one_step), ("5 s", by.five_s), ("whole runs", by.run)];
@@ -91,16 +88,36 @@ fn shrinking(diagnosis: &Diagnosis) -> String {
         );
         svg.text([350.0, y + 14.0], &format!("{} less", shrinks(share)), Anchor::End, 12.0, INK);
     }
-    let drives = match &diagnosis.together {
-        Some(together) if together.held_out_runs.is_empty() => {
-            "the very drives that the cause was found on, as all were used for that"
-        }
-        _ => "drives that were not used to find the cause",
-    };
     format!(
-        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on {drives}.</p>",
-        svg.finish("What is left of the gap at three horizons")
+        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on {}.</p>",
+        svg.finish("What is left of the gap at three horizons"),
+        judged_on(&diagnosis.held_out_runs)
     )
+}
+
+/// Why no shrink is drawn.
+fn no_shrink(diagnosis: &Diagnosis) -> &'static str {
+    let each_is_told = diagnosis.causes.iter().any(|cause| cause.shrink.is_some());
+    match diagnosis.verdict {
+        _ if diagnosis.share_of == ShareOf::Squares => {
+            "Not asked for, or not to be told of these logs."
+        }
+        Verdict::None if each_is_told => {
+            "Nothing is put into the simulator, as no cause stands out of ordinary tolerances. What the \
+             likeliest would do is on the next page."
+        }
+        Verdict::None => {
+            "Nothing is put into the simulator, as no cause stands out of ordinary tolerances."
+        }
+        Verdict::Effect => {
+            "No one cause is put into the simulator, as none is likelier than not. What the likeliest \
+             would do is on the next page."
+        }
+        Verdict::Unknown => {
+            "Nothing is put into the simulator, as no known effect is believed. What the likeliest would \
+             do is on the next page."
+        }
+    }
 }
 
 fn next(diagnosis: &Diagnosis) -> String {
@@ -117,22 +134,30 @@ fn next(diagnosis: &Diagnosis) -> String {
                 escape(&stood.join(" and "))
             );
         }
+        Verdict::None | Verdict::Unknown if is_open(diagnosis) => {
+            out.push_str("<p>Drive more: these drives do not tell which it is.</p>");
+        }
         Verdict::None if diagnosis.not_testable.is_empty() => {
             out.push_str("<p>Nothing: simulator and machine agree.</p>");
         }
         Verdict::None => out.push_str(
             "<p>Nothing as far as these drives go; what they cannot show is on the next page, with the drive that would.</p>",
         ),
-        Verdict::Unknown => out.push_str(
-            "<p>Look at the machine where the drawing is darkest: no known effect explains what is there.</p>",
-        ),
+        Verdict::Unknown => {
+            let spot = spot(diagnosis).unwrap_or_else(|| "the gap".to_owned());
+            let _ = write!(
+                out,
+                "<p>Look at what on the machine makes its {}: no known effect explains that.</p>",
+                escape(&spot)
+            );
+        }
     }
     if let Some(next) = &diagnosis.next {
         let _ = write!(
             out,
             "<p>To be surer, drive <b>{}</b>: it tells {} apart.</p>",
             escape(&next.manoeuvre),
-            escape(&next.separates.join(" and "))
+            escape(&rivals(next, " and "))
         );
     }
     out
@@ -143,7 +168,7 @@ fn basis(details: &Details) -> String {
     let seconds: f64 = details.runs.iter().map(|run| run.seconds).sum();
     let fitted = details.runs.iter().filter(|run| run.fit).count();
     format!(
-        "<p class=\"small\">From {} test drives, {seconds:.0} s in all; {fitted} were used to find the cause, {} to judge it. What was assumed is on the next page.</p>",
+        "<p class=\"small\">From {} test drives, {seconds:.0} s in all; {fitted} were fitted, {} were held out to check what was found. What was assumed is on the next page.</p>",
         details.runs.len(),
         details.runs.len() - fitted
     )

@@ -3,8 +3,7 @@
 use xt28_machine::Machine;
 
 use super::svg::escape;
-use super::words::headline;
-use super::{brief, engineer};
+use super::{brief, engineer, headline};
 use crate::diagnosis::{Details, Diagnosis};
 
 const STYLE: &str = "\

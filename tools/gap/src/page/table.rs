@@ -3,7 +3,7 @@
 use core::fmt::Write as _;
 
 use super::svg::escape;
-use super::words::{elsewhere, judged_on, on, percent, short, shrinks};
+use super::words::{by_share, elsewhere, judged_on, on, percent, short, shrinks};
 use crate::diagnosis::{Cause, Details, Diagnosis, Shrink};
 
 /// Causes listed.
@@ -32,8 +32,10 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
         percent(diagnosis.probability_none),
         percent(diagnosis.probability_unknown)
     );
+    let fitted = diagnosis.held_out_runs.is_empty();
+    let on = if fitted { ", on the runs that were fitted" } else { "" };
     format!(
-        "<table><thead><tr><th>probability</th><th>cause</th><th>where</th><th>size (90 % interval)</th><th>not to be told from</th><th>shrinks the gap by</th></tr></thead><tbody>{rows}</tbody></table>"
+        "<table><thead><tr><th>probability</th><th>cause</th><th>where</th><th>size (90 % interval)</th><th>not to be told from</th><th>shrinks the gap by{on}</th></tr></thead><tbody>{rows}</tbody></table>"
     )
 }
 
@@ -54,6 +56,9 @@ fn parameters(cause: &Cause) -> String {
             format!("{} {best} <small>({low} to {high})</small>", escape(one.name))
         })
         .collect();
+    if by_share(cause).first().is_some_and(|(scope, _)| *scope != cause.scope) {
+        out.push(format!("<small>at {}</small>", on(cause.scope)));
+    }
     if let Some(begins) = &cause.begins {
         out.push(format!("from {:.1} s of {} on", begins.at_s, escape(&begins.run)));
     }
@@ -61,8 +66,7 @@ fn parameters(cause: &Cause) -> String {
 }
 
 fn others(cause: &Cause) -> String {
-    let others: Vec<&str> =
-        cause.class.iter().copied().filter(|name| *name != cause.effect.name).collect();
+    let others = cause.alike();
     if others.is_empty() { "–".to_owned() } else { others.join(", ") }
 }
 
@@ -104,7 +108,7 @@ pub(super) fn together(diagnosis: &Diagnosis) -> String {
          <table><thead><tr><th>in the simulator</th><th>one step ahead</th><th>5 s ahead</th><th>whole runs</th></tr></thead><tbody>\
          <tr><td>no effect</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td></tr>{}{}</tbody></table>\
          <p class=\"small\">1 less the gap after over the gap before; 90 % intervals by bootstrap.{held}</p>",
-        judged_on(together),
+        judged_on(&together.held_out_runs),
         row(&together.effects.join(" + "), &together.shrink),
         row("a free model of the errors, without physics", &together.black_box)
     )

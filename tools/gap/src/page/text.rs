@@ -2,7 +2,10 @@
 
 use core::fmt::Write as _;
 
-use super::words::{elsewhere, estimate, headline, judged_on, percent, short, shrink};
+use super::headline;
+use super::words::{
+    elsewhere, estimate, how_well, judged_on, percent, rivals, share_of, short, shrink,
+};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -22,7 +25,8 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     places(&mut out, diagnosis);
     causes(&mut out, diagnosis);
     if let Some(together) = &diagnosis.together {
-        let _ = writeln!(out, "\nhow far the gap shrinks on {}", judged_on(together));
+        let _ =
+            writeln!(out, "\nhow far the gap shrinks on {}", judged_on(&together.held_out_runs));
         let _ =
             writeln!(out, "  with {}: {}", together.effects.join(" + "), shrink(&together.shrink));
         let _ =
@@ -34,10 +38,10 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     if let Some(next) = &diagnosis.next {
         let _ = writeln!(
             out,
-            "\nwhat to drive next\n  {}: tells {} apart, {:.1} nats expected",
+            "\nwhat to drive next\n  {}: tells {} apart{}",
             next.manoeuvre,
-            next.separates.join(", "),
-            next.nats
+            rivals(next, ", "),
+            how_well(next)
         );
     }
     if !diagnosis.not_testable.is_empty() {
@@ -66,20 +70,21 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
     }
     let _ = writeln!(
         out,
-        "\n{:<10} {:<7} {:<36} {:>14} {:>7}",
+        "\n{:<19} {:<6} {:<37} {:>14} {:>10}",
         "where", "wheels", "signal", "gap over noise", "share"
     );
     for place in diagnosis.places.iter().take(PLACES) {
         let _ = writeln!(
             out,
-            "{:<10} {:<7} {:<36} {:>14} {:>7}",
-            place.block,
+            "{:<19} {:<6} {:<37} {:>14} {:>10}",
+            place.part,
             place.scope,
             place.residual,
             short(place.gap_over_noise),
             percent(place.share)
         );
     }
+    let _ = writeln!(out, "  {}", share_of(diagnosis.share_of));
 }
 
 fn causes(out: &mut String, diagnosis: &Diagnosis) {
@@ -96,9 +101,8 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
             cause.effect.name,
             parameters.join(", ")
         );
-        if cause.class.len() > 1 {
-            let _ =
-                writeln!(out, "{:>11}  not to be told from {}", "", cause.class[1..].join(", "));
+        if !cause.alike().is_empty() {
+            let _ = writeln!(out, "{:>11}  not to be told from {}", "", cause.alike().join(", "));
         }
         if cause.scopes.len() > 1 {
             let _ = writeln!(out, "{:>11}  wheels not told apart: {}", "", elsewhere(cause));
@@ -107,7 +111,9 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
             let _ = writeln!(out, "{:>11}  begins {:.1} s into {}", "", begins.at_s, begins.run);
         }
         if let Some(by) = &cause.shrink {
-            let _ = writeln!(out, "{:>11}  shrinks the gap by {}", "", shrink(by));
+            let fitted = diagnosis.held_out_runs.is_empty();
+            let on = if fitted { " (on the runs that were fitted)" } else { "" };
+            let _ = writeln!(out, "{:>11}  shrinks the gap by {}{on}", "", shrink(by));
         }
     }
     let _ = writeln!(

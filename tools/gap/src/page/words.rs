@@ -3,85 +3,45 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Diagnosis, Estimate, Place, Shrink, Together, Verdict};
+use crate::diagnosis::{Cause, Estimate, Next, ShareOf, Shrink};
 
-/// How likely, beside the likeliest, other wheels have to be to be in the headline.
-const SAID_ABOVE: f64 = 0.25;
-
-/// The verdict in one sentence.
-#[must_use]
-pub fn headline(diagnosis: &Diagnosis) -> String {
-    match diagnosis.verdict {
-        Verdict::Effect => {
-            let each: Vec<String> = diagnosis.stood_by().map(cause).collect();
-            if each.is_empty() { undecided(diagnosis) } else { format!("{}.", each.join(", and ")) }
-        }
-        Verdict::None => {
-            let sure = percent(diagnosis.probability_none);
-            match diagnosis.not_testable.len() {
-                0 => format!("Nothing beyond ordinary tolerances (probability {sure})."),
-                untested => format!(
-                    "Nothing beyond ordinary tolerances in what these logs can show (probability {sure}); \
-                     effects that they cannot: {untested}."
-                ),
-            }
-        }
-        Verdict::Unknown => {
-            let place = diagnosis.places.first().map_or_else(String::new, |place| {
-                let wheels = wheels_of(place).map_or(String::new(), |on| format!(" ({on})"));
-                format!(", foremost in {}{wheels}", place.residual)
-            });
-            format!(
-                "Something is the matter that no effect of the catalogue explains{place} (probability {}).",
-                percent(diagnosis.probability_unknown)
-            )
-        }
-    }
-}
-
-/// Something is wrong, and nothing is likelier than not.
-fn undecided(diagnosis: &Diagnosis) -> String {
-    let likeliest: Vec<String> = diagnosis.causes.iter().take(2).map(cause).collect();
-    format!(
-        "Something parts from the simulator, and these logs do not tell what: {}, nothing beyond ordinary \
-         tolerances (probability {}).",
-        likeliest.join(", "),
-        percent(diagnosis.probability_none)
-    )
-}
-
-/// The wheels of a place, in words; none where its block has none.
-fn wheels_of(place: &Place) -> Option<String> {
-    place.has_wheels().then(|| on(place.scope))
-}
+/// Beyond this many nats, odds of a thousand, a figure says no more than a word: models are not that good.
+const EASILY_NATS: f64 = 7.0;
 
 /// On which runs a shrink was told, after "the gap shrinks on".
-pub(super) const fn judged_on(together: &Together) -> &'static str {
-    if together.held_out_runs.is_empty() {
+pub(super) const fn judged_on(held_out_runs: &[String]) -> &'static str {
+    if held_out_runs.is_empty() {
         "the runs that were fitted, as none was held out"
     } else {
         "runs that were not fitted"
     }
 }
 
-/// An effect with its wheels and probability.
-fn cause(cause: &Cause) -> String {
-    let likely = cause.scopes.first().map_or(1.0, |(_, share)| *share);
-    let others: Vec<String> = cause
-        .scopes
-        .iter()
-        .skip(1)
-        .filter(|(_, share)| *share > SAID_ABOVE * likely)
-        .map(|(scope, _)| on(*scope))
-        .collect();
-    let first = on(cause.scope);
-    let whose = match &others[..] {
-        _ if !cause.effect.has_scope() => String::new(),
-        [] => format!(" at {first}"),
-        [other] => format!(" at {first} or {other}"),
-        _ => format!(" at wheels that these logs do not tell apart, {first} foremost"),
-    };
-    format!("{}{whose} (probability {})", cause.effect.name, percent(cause.probability))
+/// What the shares of places are of.
+pub(super) const fn share_of(of: ShareOf) -> &'static str {
+    match of {
+        ShareOf::Squares => {
+            "share: of the squares of all gaps on measured inputs, as far as they go beyond noise"
+        }
+        ShareOf::Machine => {
+            "share: of the whole machine's gap 5 s ahead; each block's by Shapley's value, dealt out among its signals by their gaps"
+        }
+    }
+}
+
+/// What a drive tells apart.
+pub(super) fn rivals(next: &Next, joined_by: &str) -> String {
+    let name = |name: &&'static str| if *name == "none" { "no effect" } else { *name };
+    next.separates.iter().map(name).collect::<Vec<_>>().join(joined_by)
+}
+
+/// How well a drive tells causes apart, after "apart".
+pub(super) fn how_well(next: &Next) -> String {
+    if next.nats > EASILY_NATS {
+        " easily".to_owned()
+    } else {
+        format!(", {:.1} nats expected (odds of {:.0} to 1)", next.nats, next.nats.exp())
+    }
 }
 
 /// The wheels of a scope, in words.
@@ -97,17 +57,25 @@ pub(super) fn on(scope: Scope) -> String {
     }
 }
 
-/// All wheels that a cause may be at, each with its share of the probability.
-pub(super) fn elsewhere(cause: &Cause) -> String {
-    let each = |(scope, share): &(Scope, f64)| format!("{} ({})", on(*scope), percent(*share));
-    cause.scopes.iter().map(each).collect::<Vec<_>>().join(", ")
+/// All wheels that a cause may be at, the likeliest first: its size is told at those that fit best, and
+/// others may be likelier.
+pub(super) fn by_share(cause: &Cause) -> Vec<(Scope, f64)> {
+    let mut scopes = cause.scopes.clone();
+    scopes.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    scopes
 }
 
-/// A share of one in percent; never a certainty that a finite log cannot give.
+/// The same, each with its share of the probability.
+pub(super) fn elsewhere(cause: &Cause) -> String {
+    let each = |(scope, share): (Scope, f64)| format!("{} ({})", on(scope), percent(share));
+    by_share(cause).into_iter().map(each).collect::<Vec<_>>().join(", ")
+}
+
+/// A share of one in percent; never a certainty that a finite log cannot give, for or against.
 pub(super) fn percent(share: f64) -> String {
     if share > 0.99 && share < 1.01 {
         "above 99 %".to_owned()
-    } else if share > 0.0 && share < 0.01 {
+    } else if share < 0.01 {
         "below 1 %".to_owned()
     } else {
         format!("{:.0} %", share * 100.0)
@@ -116,7 +84,8 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A share of a gap in percent; it may be negative.
 pub(super) fn shrinks(share: f64) -> String {
-    format!("{:.0} %", share * 100.0)
+    // A whole number and zero: what is left of a negative share that rounds to none is no minus.
+    format!("{:.0} %", (share * 100.0).round() + 0.0)
 }
 
 /// Three significant digits.
@@ -171,6 +140,20 @@ mod tests {
         assert_eq!(percent(1.0), "above 99 %");
         assert_eq!(percent(0.93), "93 %");
         assert_eq!(percent(1e-6), "below 1 %");
-        assert_eq!(percent(0.0), "0 %");
+        assert_eq!(percent(0.0), "below 1 %");
+    }
+
+    #[test]
+    fn no_shrink_is_less_than_nothing_by_nothing() {
+        assert_eq!(shrinks(-0.004), "0 %");
+        assert_eq!(shrinks(-0.2), "-20 %");
+    }
+
+    #[test]
+    fn a_drive_that_tells_with_ease_has_no_figure() {
+        let next = |nats| Next { manoeuvre: String::new(), separates: vec!["a", "none"], nats };
+        assert_eq!(how_well(&next(549_918.9)), " easily");
+        assert_eq!(how_well(&next(3.0)), ", 3.0 nats expected (odds of 20 to 1)");
+        assert_eq!(rivals(&next(3.0), " and "), "a and no effect");
     }
 }

@@ -3,7 +3,7 @@
 use xt28_sim::effects::Block;
 
 use super::HowFar;
-use crate::diagnosis::verdict::{Cause, Diagnosis, Place, Together};
+use crate::diagnosis::verdict::{Cause, Diagnosis, Place, ShareOf, Together};
 
 /// Causes without a probability above one half whose shrink is told all the same.
 const ALSO_TOLD: usize = 3;
@@ -15,6 +15,7 @@ impl HowFar {
     pub fn complete(&self, diagnosis: &mut Diagnosis, progress: &dyn Fn(&'static str, f64)) {
         progress("overriding blocks with what they put out", 0.0);
         self.share_out(&mut diagnosis.places);
+        diagnosis.share_of = ShareOf::Machine;
         let stood_by: Vec<usize> = (0..diagnosis.causes.len())
             .filter(|&k| diagnosis.causes[k].probability > 0.5)
             .collect();

@@ -3,6 +3,8 @@
 
 use super::super::candidates::Candidate;
 use super::super::evidence::Echo;
+use super::super::floor::Signal;
+use super::super::generator::Generator;
 use super::Findings;
 use super::allowed::{echoing, excess};
 
@@ -22,6 +24,8 @@ pub(super) struct Objection {
     pub(super) times: f64,
     /// What it is, after `because`.
     pub(super) why: String,
+    /// The signal that it is about; none where it is about tolerances.
+    pub(super) at: Option<(Generator, Signal)>,
 }
 
 impl Findings {
@@ -47,9 +51,10 @@ impl Findings {
                 "{:.1} floors of {:.1} are left of the {} of {}",
                 after.square.sqrt(),
                 before.square.sqrt(),
-                after.signal,
+                after.signal.with_wheel(),
                 after.generator
             ),
+            at: Some((after.generator, after.signal)),
         })
     }
 
@@ -59,8 +64,11 @@ impl Findings {
             times: echoing(&names, echo),
             why: format!(
                 "what is left of the {} of {} is what is explained of it, moved in time ({:.0} nats)",
-                echo.signal, echo.generator, echo.nats
+                echo.signal.with_wheel(),
+                echo.generator,
+                echo.nats
             ),
+            at: Some((echo.generator, echo.signal)),
         })
     }
 
@@ -70,6 +78,7 @@ impl Findings {
         furthest.map(|(knob, by)| Objection {
             times: (by / SHIFT).powi(2),
             why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
+            at: None,
         })
     }
 
@@ -82,6 +91,7 @@ impl Findings {
             why: format!(
                 "all tolerances together would have to move by {squares:.0} squares of their own"
             ),
+            at: None,
         }
     }
 }
@@ -91,8 +101,6 @@ mod tests {
     use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
-    use super::super::super::floor::Signal;
-    use super::super::super::generator::Generator;
     use super::super::super::knob::Knob;
     use super::*;
 

@@ -8,7 +8,7 @@ use xt28_sim::effects::Scope;
 use crate::diagnosis::evidence::Left;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::Generator;
-use crate::diagnosis::verdict::Place;
+use crate::diagnosis::verdict::{Place, Unexplained};
 
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
 const ALIKE: f64 = 0.4;
@@ -19,15 +19,18 @@ const SURE: f64 = 40.0;
 /// Places by what their gaps say, in nats: what goes once the best cause is believed, and what is then
 /// still there beyond the floor. A gap that every machine has says nothing, however large it is.
 pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
-    let all: Vec<Parting> = before.iter().zip(after).map(Parting::new).collect();
+    // What was never measured has no gap, and not one of nothing.
+    let measured = before.iter().zip(after).filter(|(before, _)| before.samples > 0.0);
+    let all: Vec<Parting> = measured.map(Parting::new).collect();
     let total: f64 = all.iter().map(|parting| parting.excess).sum::<f64>().max(f64::MIN_POSITIVE);
     let mut places = Vec::new();
     let mut place = |scope: Scope, of: &[&Parting]| {
         let Some(Parting { left, .. }) = of.first() else { return };
         let place = Place {
             block: left.generator.block(),
+            part: left.generator.part(),
             scope,
-            residual: residual(left),
+            residual: residual(left.generator, left.signal),
             gap_over_noise: of.iter().map(|p| p.left.square.sqrt()).fold(0.0, f64::max),
             share: of.iter().map(|parting| parting.excess).sum::<f64>() / total,
         };
@@ -35,7 +38,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
     };
     let mut of_wheels: BTreeMap<String, Vec<(Wheel, &Parting)>> = BTreeMap::new();
     for parting in &all {
-        match wheel(parting.left) {
+        match wheel(parting.left.generator, parting.left.signal) {
             Some(wheel) => {
                 let signal = parting.left.signal.to_string();
                 of_wheels.entry(signal).or_default().push((wheel, parting));
@@ -78,19 +81,29 @@ impl<'a> Parting<'a> {
 /// The signal in words, with its joint or wheel where it is one of some. A wheel that seems to hang in
 /// the air says that the machine does not stand as its strokes have it, not that this wheel is the matter:
 /// its place is the machine.
-fn residual(left: &Left) -> String {
-    match (left.generator, left.signal) {
+fn residual(generator: Generator, signal: Signal) -> String {
+    match (generator, signal) {
         (Generator::Joint(0) | Generator::SteerEcu(0), signal) => format!("front {signal}"),
         (Generator::Joint(_) | Generator::SteerEcu(_), signal) => format!("rear {signal}"),
-        (_, signal @ Signal::Contact(wheel)) => format!("{signal}, {wheel}"),
+        (_, signal @ Signal::Contact(_)) => signal.with_wheel(),
         (_, signal) => signal.to_string(),
     }
 }
 
-fn wheel(left: &Left) -> Option<Wheel> {
-    match left.signal {
+fn wheel(generator: Generator, signal: Signal) -> Option<Wheel> {
+    match signal {
         Signal::WheelSpeed(wheel) => Some(wheel),
-        _ => left.generator.wheel(),
+        _ => generator.wheel(),
+    }
+}
+
+/// One signal of one generator, as places name it.
+pub(super) fn unexplained((generator, signal): (Generator, Signal)) -> Unexplained {
+    Unexplained {
+        block: generator.block(),
+        part: generator.part(),
+        scope: wheel(generator, signal).map_or(Scope::All, Scope::Wheel),
+        residual: residual(generator, signal),
     }
 }
 

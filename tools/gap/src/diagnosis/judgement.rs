@@ -89,13 +89,13 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     };
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
+    let places = places(apart, &findings.after);
+    let objection = findings.objection().at.filter(|_| verdict == Verdict::Unknown);
     let mut diagnosis = Diagnosis {
         verdict,
-        places: places(apart, &findings.after),
         share_of: ShareOf::Squares,
-        unexplained: (verdict == Verdict::Unknown)
-            .then(|| findings.objection().at.map(unexplained))
-            .flatten(),
+        unexplained: objection.map(|at| unexplained(at, &places)),
+        places,
         causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,

@@ -168,7 +168,7 @@ fn basis(details: &Details) -> String {
     let seconds: f64 = details.runs.iter().map(|run| run.seconds).sum();
     let fitted = details.runs.iter().filter(|run| run.fit).count();
     format!(
-        "<p class=\"small\">From {} test drives, {seconds:.0} s in all; {fitted} were fitted, {} were held out to check what was found. What was assumed is on the next page.</p>",
+        "<p class=\"small\">Test drives: {}, {seconds:.0} s in all; fitted: {fitted}, held out to check what was found: {}. What was assumed is on the next page.</p>",
         details.runs.len(),
         details.runs.len() - fitted
     )

@@ -32,7 +32,8 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
         percent(diagnosis.probability_none),
         percent(diagnosis.probability_unknown)
     );
-    let fitted = diagnosis.held_out_runs.is_empty();
+    let is_told = diagnosis.causes.iter().take(CAUSES).any(|cause| cause.shrink.is_some());
+    let fitted = is_told && diagnosis.held_out_runs.is_empty();
     let on = if fitted { ", on the runs that were fitted" } else { "" };
     format!(
         "<table><thead><tr><th>probability</th><th>cause</th><th>where</th><th>size (90 % interval)</th><th>not to be told from</th><th>shrinks the gap by{on}</th></tr></thead><tbody>{rows}</tbody></table>"

@@ -97,14 +97,20 @@ fn wheel(generator: Generator, signal: Signal) -> Option<Wheel> {
     }
 }
 
-/// One signal of one generator, as places name it.
-pub(super) fn unexplained((generator, signal): (Generator, Signal)) -> Unexplained {
-    Unexplained {
-        block: generator.block(),
-        part: generator.part(),
-        scope: wheel(generator, signal).map_or(Scope::All, Scope::Wheel),
-        residual: residual(generator, signal),
-    }
+/// One signal of one generator, as `places` name it, with the wheels that part as its own does.
+pub(super) fn unexplained(
+    (generator, signal): (Generator, Signal),
+    places: &[Place],
+) -> Unexplained {
+    let (part, residual) = (generator.part(), residual(generator, signal));
+    let own = wheel(generator, signal);
+    let alike = places.iter().find(|place| {
+        let is_there = own.is_none_or(|wheel| place.scope.contains(wheel));
+        place.part == part && place.residual == residual && is_there
+    });
+    let alone = || own.map_or(Scope::All, Scope::Wheel);
+    let scope = alike.map_or_else(alone, |place| place.scope);
+    Unexplained { block: generator.block(), part, scope, residual }
 }
 
 /// The scope whose wheels are those that part alike, and the wheels beside it; wheel by wheel where
@@ -151,6 +157,16 @@ mod tests {
         assert!((places[0].gap_over_noise - 10.0).abs() < 1e-12);
         assert!((places[0].share - 1.0).abs() < 1e-12);
         assert_eq!(places.len(), 5);
+    }
+
+    #[test]
+    fn what_is_unexplained_has_the_wheels_of_its_place() {
+        let square = |wheel: Wheel| if wheel.axle() == Axle::Front { 100.0 } else { 1.0 };
+        let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
+        let places = places(&before, &before);
+        let of = |wheel| unexplained((Generator::ArmStroke(wheel), Signal::Stroke), &places).scope;
+        assert_eq!(of(Wheel::Fl), Scope::Axle(Axle::Front));
+        assert_eq!(of(Wheel::Br), Scope::Wheel(Wheel::Br));
     }
 
     #[test]

@@ -141,6 +141,24 @@ fn a_misspelt_answer_is_named_before_anything_is_diagnosed() {
 }
 
 #[test]
+fn scores_are_not_written_over_a_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = folder.path().join("set");
+    fs::create_dir_all(set.join("one")).unwrap();
+    fs::create_dir(folder.path().join("answers")).unwrap();
+    let about = file(&folder, "set/one/about.toml", "case = \"one\"\nrun = []\n");
+    let answer = file(&folder, "answers/one.toml", "case = \"one\"\nkind = \"null\"\n");
+    let set = set.to_str().unwrap();
+    for (option, kept) in [("--json", &about), ("--curve", &answer)] {
+        let talk = refusal(&["gap", "check", "--set", set, option, kept]);
+        assert!(talk.contains(&format!("reads that file; give {option} another")), "{talk}");
+    }
+    let one = folder.path().join("one").to_str().unwrap().to_owned();
+    let talk = refusal(&["gap", "check", "--set", set, "--json", &one, "--curve", &one]);
+    assert!(talk.contains("--json and --curve would write the same file"), "{talk}");
+}
+
+#[test]
 fn a_file_that_cannot_be_written_is_refused_before_the_work() {
     let folder = tempfile::tempdir().unwrap();
     let log = file(&folder, "a.log", "no log at all");

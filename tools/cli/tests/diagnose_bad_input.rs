@@ -97,6 +97,19 @@ fn a_signal_that_was_not_recorded_is_named_with_its_message() {
 }
 
 #[test]
+fn a_log_without_chamber_pressures_is_taken_with_a_word() {
+    let pressures = ["PressFront", "PressMid", "PressRear"].map(|name| format!(" {}#", id(name)));
+    let (_folder, log) = changed(|at_s, rest| {
+        let is_pressure = pressures.iter().any(|id| rest.contains(id));
+        (!is_pressure).then(|| (at_s, rest.to_owned()))
+    });
+    let output = xt28(&["gap", "where", &log, "--dbc", DBC]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_ne!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("which come more slowly and say less: changed.log."), "{talk}");
+}
+
+#[test]
 fn the_log_of_another_bus_is_refused_with_what_is_on_it() {
     let other = |at_s: f64, rest: &str| {
         let data = rest.split_once('#').unwrap().1;

@@ -62,9 +62,8 @@ impl Check {
             ("--json, for its seal,", seal.as_ref()),
             ("--curve", self.curve.as_ref()),
         ]);
-        let read: Vec<Vec<PathBuf>> =
-            sources.iter().map(Source::files).collect::<Result<_, _>>()?;
-        outputs.ensure_apart(read.iter().flatten().map(PathBuf::as_path))?;
+        let read: Vec<PathBuf> = sources.iter().flat_map(Source::files).collect();
+        outputs.ensure_apart(read.iter().map(PathBuf::as_path))?;
         let withheld = match &self.set {
             _ if !self.sweep => Vec::new(),
             Some(_) => sources.clone(),

@@ -149,8 +149,8 @@ impl Diagnose {
         Ok((inquiry, notes))
     }
 
-    /// Says what to drive next, and writes it: what tells the causes apart or, where there are none, what
-    /// shows most that these logs do not.
+    /// Says what to drive next, and writes it: what tells likely causes apart or, where nothing does,
+    /// what shows most that these logs do not.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
         diagnosis.looked_ahead = true;
         let (manoeuvre, good_for) = if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)?
@@ -163,13 +163,13 @@ impl Diagnose {
             let some =
                 if effects == 1 { "an effect".to_owned() } else { format!("{effects} effects") };
             diagnosis.notes.push(format!(
-                "No scripted drive is worth it to tell likely causes apart. {name} would test {some} that \
-                 these logs do not."
+                "No scripted drive is left that would tell likely causes apart; {name} would test {some} \
+                 that these logs do not."
             ));
             (manoeuvre, "tests what no log did".to_owned())
         } else {
-            let nothing = "No scripted drive is worth it: none of those not made would tell likely causes \
-                           apart, and no effect is untested.";
+            let nothing = "No scripted drive is left that would tell likely causes apart, and no effect is \
+                           untested.";
             let unwritten =
                 self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
             diagnosis.notes.push(format!("{nothing}{}", unwritten.unwrap_or_default()));

@@ -97,17 +97,18 @@ impl Source {
         }
     }
 
-    /// The files that it is read from.
-    ///
-    /// # Errors
-    /// [`CheckError`] for a folder whose `about.toml` cannot be read.
-    pub fn files(&self) -> Result<Vec<PathBuf>, CheckError> {
-        let Self::Folder { folder, answer } = self else { return Ok(Vec::new()) };
+    /// The files that it is read from; what an `about.toml` that cannot be read would name is none.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let Self::Folder { folder, answer } = self else { return Vec::new() };
         let path = folder.join(ABOUT);
-        let about = About::load(&path)?;
-        let beside = about.run.iter().map(|run| &run.file).chain(&about.dbc);
-        let beside: Vec<PathBuf> = beside.map(|file| folder.join(file)).collect();
-        Ok([vec![path, answer.clone()], beside].concat())
+        let about = About::load(&path).ok();
+        let named = about.iter().flat_map(|about| {
+            let logs = about.run.iter().map(|run| &run.file);
+            logs.chain(&about.dbc).map(|file| folder.join(file))
+        });
+        let beside: Vec<PathBuf> = named.collect();
+        [vec![path, answer.clone()], beside].concat()
     }
 
     /// Text of its answer, to be sealed and not to be looked at.

@@ -19,6 +19,13 @@ pub struct LogFault {
 pub enum FaultKind {
     /// The log ends in the middle of its last line, which is left out.
     Cut,
+    /// Frames come later than merged sources do, but soon enough to be put in order.
+    OutOfOrder {
+        /// The largest step back, s.
+        by_s: f64,
+        /// Frames put in order.
+        frames: u64,
+    },
     /// Times go back; the frames up to the time before are left out.
     ClockBack {
         /// The largest step back, s.
@@ -78,6 +85,11 @@ impl fmt::Display for LogFault {
         write!(f, "{}:{}: ", self.log, self.line)?;
         match &self.kind {
             FaultKind::Cut => write!(f, "log is cut here; what is not whole is left out"),
+            FaultKind::OutOfOrder { by_s, frames } => write!(
+                f,
+                "times go back by up to {:.1} ms; {frames} frames are put in order, so cut the log there if the clock was set",
+                by_s * 1e3
+            ),
             FaultKind::ClockBack { by_s, frames } => write!(
                 f,
                 "clock jumps back by {by_s:.6} s; {frames} frames are left out until it has caught up, so cut the log there if they matter"

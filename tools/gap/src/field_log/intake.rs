@@ -1,0 +1,171 @@
+//! A log while it is read: frames in order of time become samples, and what is wrong is counted.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::time::Duration;
+
+use xt28_bus::candump::Record;
+use xt28_dbc::{CanId, Frame};
+use xt28_dbc_model::ValueError;
+use xt28_machine::SimTime;
+
+use super::FieldLog;
+use super::attendance::Attendance;
+use super::order::{Order, Place};
+use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
+
+/// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
+const PAUSE_S: f64 = 0.2;
+/// Merged sources lie a few ms apart; frames that come later than this may be of a clock that stepped.
+const LATE_TOLD: Duration = Duration::from_millis(10);
+/// Identifiers that an error names, of those that a DBC has not.
+const STRANGE_SHOWN: usize = 5;
+
+/// A log while it is read.
+#[derive(Default)]
+pub(super) struct Intake {
+    order: Order,
+    series: BTreeMap<Channel, Series>,
+    first: Option<SimTime>,
+    latest: SimTime,
+    frames: u64,
+    known_frames: u64,
+    strange: BTreeSet<CanId>,
+    late: Option<Stretch>,
+    back: Option<Stretch>,
+    ahead: Option<Stretch>,
+    messages: BTreeMap<CanId, Attendance>,
+    refused: BTreeMap<Channel, (u64, ValueError, u64)>,
+}
+
+/// The longest of several spans of one kind, the line it is at, and how many there are.
+struct Stretch {
+    line: u64,
+    span: Duration,
+    times: u64,
+}
+
+impl Stretch {
+    fn note(kept: &mut Option<Self>, line: u64, span: Duration) {
+        let kept = kept.get_or_insert(Self { line, span, times: 0 });
+        if span > kept.span {
+            (kept.line, kept.span) = (line, span);
+        }
+        kept.times += 1;
+    }
+}
+
+impl Intake {
+    pub(super) fn take(&mut self, decoder: &Decoder, record: &Record, line: u64) {
+        self.frames += 1;
+        match self.order.put(record.at, line, record.frame) {
+            Place::Next => {}
+            Place::Late(by) => Stretch::note(&mut self.late, line, by),
+            Place::Past(by) => return Stretch::note(&mut self.back, line, by),
+        }
+        while let Some((at, line, frame)) = self.order.due() {
+            self.hear(decoder, at, line, &frame);
+        }
+    }
+
+    /// Takes the next frame in order of time.
+    fn hear(&mut self, decoder: &Decoder, at: SimTime, line: u64, frame: &Frame) {
+        let first = *self.first.get_or_insert(at);
+        let silence = at - self.latest.max(first);
+        if silence.as_secs_f64() > PAUSE_S {
+            Stretch::note(&mut self.ahead, line, silence);
+        }
+        self.latest = at;
+        let Some(tap) = decoder.tap(frame.id()) else {
+            if self.strange.len() < STRANGE_SHOWN {
+                self.strange.insert(frame.id());
+            }
+            return;
+        };
+        self.known_frames += 1;
+        self.messages.entry(frame.id()).or_default().note(tap, at, line, frame);
+        let at_s = (at - first).as_secs_f64();
+        for (channel, value) in tap.values(frame) {
+            match value {
+                Ok(value) => {
+                    self.series.entry(channel).or_default().push(at_s, value);
+                }
+                Err(error) => self.refused.entry(channel).or_insert((line, error, 0)).2 += 1,
+            }
+        }
+    }
+
+    /// What says that this is another bus's log: none of its frames is known.
+    fn stranger(&self, log: &str) -> GapError {
+        let ids: Vec<String> = self.strange.iter().map(ToString::to_string).collect();
+        GapError::Stranger { log: log.to_owned(), frames: self.frames, ids: ids.join(", ") }
+    }
+
+    pub(super) fn finish(
+        mut self,
+        name: Arc<str>,
+        decoder: &Decoder,
+        mut kinds: Vec<(u64, FaultKind)>,
+    ) -> Result<FieldLog, GapError> {
+        while let Some((at, line, frame)) = self.order.rest() {
+            self.hear(decoder, at, line, &frame);
+        }
+        if let Some(Stretch { line, span, times }) = self.back
+            && times > self.frames / 2
+        {
+            // Not what came after is out of time, but what came before.
+            let by_s = -span.as_secs_f64();
+            return Err(GapError::ClockSteps { log: name.to_string(), line, by_s });
+        }
+        if self.known_frames == 0 && self.frames > 0 {
+            return Err(self.stranger(&name));
+        }
+        for channel in Channel::all() {
+            if channel.need() == Need::Required && !self.series.contains_key(&channel) {
+                return Err(GapError::Silent {
+                    log: name.to_string(),
+                    message: decoder.message_of(channel).unwrap_or_default().to_owned(),
+                    channel: channel.to_string(),
+                    known: self.known_frames,
+                    frames: self.frames,
+                });
+            }
+        }
+        kinds.extend(self.faults(decoder));
+        kinds.sort_by_key(|(line, _)| *line);
+        let fault = |(line, kind)| LogFault { log: name.clone(), line, kind };
+        Ok(FieldLog {
+            faults: kinds.into_iter().map(fault).collect(),
+            series: self.series,
+            frames: self.frames,
+            duration_s: (self.latest - self.first.unwrap_or_default()).as_secs_f64(),
+            name,
+        })
+    }
+
+    /// What was wrong with the frames, each with its line.
+    fn faults(&self, decoder: &Decoder) -> Vec<(u64, FaultKind)> {
+        let mut kinds = Vec::new();
+        if let Some(Stretch { line, span, times: frames }) = self.late
+            && span > LATE_TOLD
+        {
+            kinds.push((line, FaultKind::OutOfOrder { by_s: span.as_secs_f64(), frames }));
+        }
+        if let Some(Stretch { line, span, times: frames }) = self.back {
+            kinds.push((line, FaultKind::ClockBack { by_s: span.as_secs_f64(), frames }));
+        }
+        if let Some(Stretch { line, span, times }) = self.ahead {
+            kinds.push((line, FaultKind::ClockAhead { by_s: span.as_secs_f64(), times }));
+        }
+        for (id, attendance) in &self.messages {
+            if let Some(tap) = decoder.tap(*id) {
+                kinds.extend(attendance.faults(tap));
+            }
+        }
+        for (channel, (line, error, values)) in &self.refused {
+            let (channel, problem) = (channel.to_string(), error.to_string());
+            kinds.push((*line, FaultKind::Unbelievable { channel, problem, values: *values }));
+        }
+        kinds
+    }
+}

@@ -120,7 +120,8 @@ impl Run {
     /// Takes frames until `due`, asleep in between.
     fn listen_until(&mut self, due: Duration) -> Result<(), Problem> {
         loop {
-            while let Some(frame) = self.wire.receive()? {
+            let start = self.start;
+            while let Some(frame) = self.wire.receive(|| start.elapsed())? {
                 self.gateway.on_frame(sim_time(self.start.elapsed()), &frame);
             }
             let left = due.saturating_sub(self.start.elapsed());

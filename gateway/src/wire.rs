@@ -1,4 +1,7 @@
 //! The CAN interface of a run, with the log of all that passes it.
+//!
+//! The log goes by one clock, the run's own, which does not step. Received frames bear the kernel's
+//! wall-clock stamp; what counts of it is how long ago that was when the frame was taken.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -13,9 +16,14 @@ use xt28_machine::SimTime;
 
 use crate::problem::Problem;
 
+/// No frame waits longer in the socket: the loop looks every tick. An age beyond it says that the
+/// wall clock was set in between.
+const AGE_MAX: Duration = Duration::from_secs(1);
+
 /// An interface, recorded or not.
 pub(crate) struct Wire {
     socket: SocketCan,
+    start: SystemTime,
     log: Option<Writer<BufWriter<File>>>,
 }
 
@@ -36,7 +44,7 @@ impl Wire {
                 Some(Writer::new(BufWriter::new(file), interface).starting_at(epoch))
             }
         };
-        Ok(Self { socket, log })
+        Ok(Self { socket, start, log })
     }
 
     pub(crate) fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Problem> {
@@ -44,11 +52,15 @@ impl Wire {
         self.log(now, frame)
     }
 
-    /// The next frame. Its log line has the kernel's stamp; the caller goes by its own clock, which
-    /// does not step.
-    pub(crate) fn receive(&mut self) -> Result<Option<Frame>, Problem> {
+    /// The next frame; `since_start` is the run's clock.
+    pub(crate) fn receive(
+        &mut self,
+        since_start: impl Fn() -> Duration,
+    ) -> Result<Option<Frame>, Problem> {
         let Some(received) = self.socket.receive()? else { return Ok(None) };
-        self.log(received.at, &received.frame)?;
+        let wall = SystemTime::now().duration_since(self.start).unwrap_or_default();
+        let at = heard_at(since_start(), wall, received.at.since(SimTime::ZERO));
+        self.log(at, &received.frame)?;
         Ok(Some(received.frame))
     }
 
@@ -74,5 +86,31 @@ impl Wire {
             None => Ok(()),
             Some(log) => log.write(at, frame).map_err(Problem::Log),
         }
+    }
+}
+
+/// When a frame came in, on the run's clock: `now` less its age, which is what the wall clock says now
+/// (`wall`) less what it said then (`stamp`), all since the start.
+fn heard_at(now: Duration, wall: Duration, stamp: Duration) -> SimTime {
+    let age = wall.checked_sub(stamp).filter(|age| *age <= AGE_MAX).unwrap_or_default();
+    SimTime::ZERO + now.saturating_sub(age)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_is_logged_when_it_came_in_whatever_the_wall_clock_says() {
+        let ms = Duration::from_millis;
+        let at = |now, wall, stamp| heard_at(ms(now), ms(wall), ms(stamp)).as_nanos() / 1_000_000;
+        assert_eq!(at(5_000, 5_000, 4_991), 4_991);
+        // Set by an hour before the frame came: only its age counts.
+        assert_eq!(at(5_000, 3_605_000, 3_604_991), 4_991);
+        // Set back before the start, where both read zero.
+        assert_eq!(at(5_000, 0, 0), 5_000);
+        // Set between stamp and taking, either way.
+        assert_eq!(at(5_000, 3_605_000, 4_991), 5_000);
+        assert_eq!(at(5_000, 1_000, 4_991), 5_000);
     }
 }

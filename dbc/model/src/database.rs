@@ -7,6 +7,7 @@ use can_dbc::{
     SignalExtendedValueType, ValueDescription, ValueType,
 };
 
+use crate::declared::{Declared, declared};
 use crate::stray::stray;
 use crate::{Field, Kind, Message, Presence, Problem, Signal};
 
@@ -15,7 +16,19 @@ use crate::{Field, Kind, Message, Presence, Problem, Signal};
 pub struct Database {
     messages: Vec<Message>,
     by_id: BTreeMap<u32, usize>,
-    stray: Vec<Problem>,
+    stray: Vec<(u32, Problem)>,
+    unusable: Vec<Unusable>,
+}
+
+/// A message, or one signal of it, that no frame can be read by. The rest of its database can be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unusable {
+    /// Name of the message.
+    pub message: String,
+    /// Name of the signal; the whole message is unusable without one.
+    pub signal: Option<String>,
+    /// Where and why.
+    pub why: ReadError,
 }
 
 /// Why a database was not read.
@@ -33,23 +46,52 @@ pub struct ReadError {
 impl Database {
     /// Reads DBC text; `file` only names it in errors.
     ///
-    /// A range of zero to zero means the whole raw range, as editors write it.
+    /// A range of zero to zero means the whole raw range, as editors write it. A message or signal
+    /// that no frame has is left out and told by [`Database::unusable`].
     ///
     /// # Errors
     /// [`ReadError`], with the line.
     pub fn parse(text: &str, file: &str) -> Result<Self, ReadError> {
+        let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let dbc = Dbc::try_from(text).map_err(|error| read_error(&error, text, file))?;
-        check_identifiers(&dbc, text, file)?;
-        let mut messages: Vec<Message> = Vec::with_capacity(dbc.messages.len());
-        for message in &dbc.messages {
-            messages.push(read_message(&dbc, message).map_err(|problem| ReadError {
-                file: file.to_owned(),
-                line: line_of_message(text, message.id),
-                problem,
-            })?);
+        let declared = declared(text);
+        let (mut messages, mut unusable) = (Vec::with_capacity(dbc.messages.len()), Vec::new());
+        for (i, message) in dbc.messages.iter().enumerate() {
+            let place = declared.get(i).filter(|place| place.name == message.name);
+            let mut refuse = |signal: Option<&str>, problem| {
+                let line = place.map_or(1, |place| place.line_of(signal.unwrap_or_default()));
+                let why = ReadError { file: file.to_owned(), line, problem };
+                let (message, signal) = (message.name.clone(), signal.map(str::to_owned));
+                unusable.push(Unusable { message, signal, why });
+            };
+            match place.map_or(Ok(()), check_identifier).and_then(|()| read_message(&dbc, message))
+            {
+                Err(problem) => refuse(None, problem),
+                Ok((message, refused)) => {
+                    for (signal, problem) in refused {
+                        refuse(Some(&signal), problem);
+                    }
+                    messages.push(message);
+                }
+            }
         }
         let by_id = messages.iter().enumerate().rev().map(|(i, m)| (m.id, i)).collect();
-        Ok(Self { messages, by_id, stray: stray(&dbc) })
+        Ok(Self { messages, by_id, stray: stray(&dbc), unusable })
+    }
+
+    /// Messages and signals that are left out, in the order of the file.
+    #[must_use]
+    pub fn unusable(&self) -> &[Unusable] {
+        &self.unusable
+    }
+
+    /// Why the signal of a message cannot be used; `None` where it can, or is not there.
+    #[must_use]
+    pub fn why_unusable(&self, message: &str, signal: &str) -> Option<&ReadError> {
+        let about = |one: &&Unusable| {
+            one.message == message && one.signal.as_ref().is_none_or(|name| name == signal)
+        };
+        self.unusable.iter().find(about).map(|one| &one.why)
     }
 
     /// Messages, in the order of the file.
@@ -64,8 +106,8 @@ impl Database {
         self.by_id.get(&id).map(|&index| &self.messages[index])
     }
 
-    /// Statements about nothing declared.
-    pub(crate) fn stray(&self) -> &[Problem] {
+    /// Statements about nothing declared, with the identifier each names.
+    pub(crate) fn stray(&self) -> &[(u32, Problem)] {
         &self.stray
     }
 
@@ -76,33 +118,31 @@ impl Database {
     }
 }
 
-/// An 11-bit identifier with more bits has no frame, and the parser would cut it down to another.
-fn check_identifiers(dbc: &Dbc, text: &str, file: &str) -> Result<(), ReadError> {
+/// An identifier with more bits than its kind has is no frame's, and the parser would cut it down to
+/// another's.
+fn check_identifier(place: &Declared<'_>) -> Result<(), String> {
     const EXTENDED: u64 = 0x8000_0000;
     const STANDARD_MAX: u64 = 0x7FF;
-    for (index, line) in text.lines().enumerate() {
-        let mut words = line.strip_prefix("BO_ ").unwrap_or_default().split([' ', ':']);
-        let (id, name) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
-        // A line of a comment may look like a message; the parser knows which are.
-        let is_message = dbc.messages.iter().any(|message| message.name == name);
-        if let Ok(id) = id.parse::<u64>()
-            && is_message
-            && id & EXTENDED == 0
-            && id > STANDARD_MAX
-        {
-            return Err(ReadError {
-                file: file.to_owned(),
-                line: index + 1,
-                problem: format!("{name}: {id} has more than 11 bits; add 2147483648 for 29"),
-            });
+    const EXTENDED_MAX: u64 = 0x9FFF_FFFF;
+    let (id, name) = (place.id, place.name);
+    match id.parse::<u64>() {
+        Ok(raw) if raw & EXTENDED == 0 && raw > STANDARD_MAX => {
+            Err(format!("{name}: {id} has more than 11 bits; add 2147483648 for 29"))
         }
+        Ok(raw) if raw > EXTENDED_MAX => {
+            Err(format!("{name}: {id} has more than 29 bits; take 536870912 or 1073741824 off"))
+        }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// Line of the first statement, comments left out, that holds what the parser quotes in `error`.
-fn line_of_quoted(error: &str, text: &str) -> Option<usize> {
-    let quoted = error.split('\'').nth(1)?;
+fn line_of_quoted(error: &can_dbc::DbcError, text: &str) -> Option<usize> {
+    let said = match error {
+        can_dbc::DbcError::MessageIdOutOfRange(id) => format!("'{id}'"),
+        error => error.to_string(),
+    };
+    let quoted = said.split('\'').nth(1)?;
     let holds = |line: &str| !line.starts_with("CM_") && line.contains(quoted);
     text.lines().position(holds).map(|index| index + 1)
 }
@@ -114,18 +154,17 @@ fn read_error(error: &can_dbc::DbcError, source: &str, file: &str) -> ReadError 
         .split("-->")
         .nth(1)
         .and_then(|rest| rest.trim().split(':').next()?.parse().ok())
-        .or_else(|| line_of_quoted(&text, source))
+        .or_else(|| line_of_quoted(error, source))
         .unwrap_or(1);
     let problem = text.lines().last().unwrap_or("not a DBC").trim_start_matches([' ', '=']);
     ReadError { file: file.to_owned(), line, problem: problem.trim().to_owned() }
 }
 
-fn line_of_message(text: &str, id: MessageId) -> usize {
-    let start = format!("BO_ {} ", id.raw());
-    text.lines().position(|line| line.starts_with(&start)).map_or(1, |index| index + 1)
-}
-
-fn read_message(dbc: &Dbc, message: &can_dbc::Message) -> Result<Message, String> {
+/// A message with the signals that can be used, and what is wrong with each of the others.
+fn read_message(
+    dbc: &Dbc,
+    message: &can_dbc::Message,
+) -> Result<(Message, Vec<(String, String)>), String> {
     let id = message.id;
     let len = u8::try_from(message.size).ok().filter(|&len| len <= 64).ok_or_else(|| {
         format!("{} has {} bytes; frames have up to 64", message.name, message.size)
@@ -135,17 +174,19 @@ fn read_message(dbc: &Dbc, message: &can_dbc::Message) -> Result<Message, String
         .iter()
         .find(|s| s.multiplexer_indicator == MultiplexIndicator::Multiplexor)
         .map(|s| s.name.clone());
-    let signals = message
-        .signals
-        .iter()
-        .map(|signal| read_signal(dbc, message, signal, switch.as_deref()))
-        .collect::<Result<_, _>>()?;
+    let (mut signals, mut refused) = (Vec::with_capacity(message.signals.len()), Vec::new());
+    for signal in &message.signals {
+        match read_signal(dbc, message, signal, switch.as_deref()) {
+            Ok(signal) => signals.push(signal),
+            Err(problem) => refused.push((signal.name.clone(), problem)),
+        }
+    }
     let attribute = |name: &str| message_attribute(dbc, id, name);
     let comment = dbc.comments.iter().find_map(|c| match c {
         Comment::Message { id: at, comment } if *at == id => Some(comment.clone()),
         _ => None,
     });
-    Ok(Message {
+    let message = Message {
         id: id.raw(),
         name: message.name.clone(),
         len,
@@ -155,7 +196,8 @@ fn read_message(dbc: &Dbc, message: &can_dbc::Message) -> Result<Message, String
         data_id: u16::try_from(attribute("E2eDataId")).unwrap_or(0),
         alive: attribute("AliveCounter") != 0,
         signals,
-    })
+    };
+    Ok((message, refused))
 }
 
 fn read_signal(

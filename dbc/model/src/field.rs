@@ -121,9 +121,9 @@ impl Field {
             return Err(ValueError::NotFinite(value));
         }
         // Half a raw unit of slack, so that 510.3 mm at 2 mm a bit means 510 and not an error.
-        let slack = if self.is_float() { 0.0 } else { self.factor.abs() / 2.0 };
+        let slack = |end| if self.is_float() { self.slack(end) } else { self.factor.abs() / 2.0 };
         let out = ValueError::OutOfRange { value, min: self.min, max: self.max };
-        if value < self.min - slack || value > self.max + slack {
+        if value < self.min - slack(self.min) || value > self.max + slack(self.max) {
             return Err(out);
         }
         let number = (value - self.offset) / self.factor;
@@ -191,12 +191,22 @@ impl Field {
         if !value.is_finite() {
             return Err(ValueError::NotFinite(value));
         }
-        // The ends of the range are decimal numbers, the value a product: leave rounding its room.
-        let slack = if self.is_float() { 0.0 } else { self.factor.abs() * 1e-6 };
-        if value < self.min - slack || value > self.max + slack {
+        if value < self.min - self.slack(self.min) || value > self.max + self.slack(self.max) {
             return Err(ValueError::OutOfRange { value, min: self.min, max: self.max });
         }
         Ok(())
+    }
+
+    /// How far beyond an end of the range a value still counts as that end. The end is a decimal
+    /// number, the value a product or the nearest float: 0.18 is 0.180000007 in 32 bits.
+    fn slack(&self, end: f64) -> f64 {
+        let step = match self.kind {
+            Kind::Float32 => f64::from(f32::EPSILON),
+            Kind::Float64 => f64::EPSILON,
+            Kind::Unsigned | Kind::Signed => return self.factor.abs() * 1e-6,
+        };
+        // The raw number's last place, and that of the sum with the offset.
+        (end - self.offset).abs() * step + (end.abs() + self.offset.abs()) * f64::EPSILON
     }
 
     #[allow(clippy::cast_possible_wrap)]

@@ -11,9 +11,10 @@ use crate::{Database, Field, Kind, Message, Signal};
 /// # Errors
 /// [`GenerateError`].
 pub fn generate(database: &Database) -> Result<String, GenerateError> {
+    let unusable = database.unusable().iter().map(|one| one.why.to_string());
     let problems = database.problems();
-    if !problems.is_empty() {
-        let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    let lines: Vec<String> = unusable.chain(problems.iter().map(ToString::to_string)).collect();
+    if !lines.is_empty() {
         return Err(GenerateError::Problems(lines.join("\n")));
     }
     check_names(database)?;

@@ -6,16 +6,19 @@
 
 mod check;
 mod database;
+mod declared;
 mod field;
 mod generate;
 mod generate_error;
 mod message;
 mod names;
 mod stray;
+mod text;
 
-pub use check::Problem;
-pub use database::{Database, ReadError};
+pub use check::{Harm, Problem};
+pub use database::{Database, ReadError, Unusable};
 pub use field::{Field, Kind, ValueError};
 pub use generate::generate;
 pub use generate_error::GenerateError;
 pub use message::{CodecError, Message, Presence, Signal};
+pub use text::text;

@@ -94,7 +94,17 @@ pub enum CodecError {
     },
 }
 
+/// Bit of the CRC byte of a protected message.
+const CRC_START: u16 = 56;
+
 impl Message {
+    /// True if its frames carry the CRC of our end-to-end protection: a data ID, and an 8-bit signal
+    /// `Crc` in the last of eight bytes.
+    #[must_use]
+    pub fn is_protected(&self) -> bool {
+        self.data_id != 0 && self.len == 8 && self.signals.iter().any(Signal::is_crc)
+    }
+
     /// The signal of that name.
     #[must_use]
     pub fn signal(&self, name: &str) -> Option<&Signal> {
@@ -165,6 +175,12 @@ impl Message {
         false
     }
 
+    /// The signal itself and the switches it hangs on, outermost last. A ring of them is cut.
+    pub(crate) fn switches<'a>(&'a self, signal: &'a Signal) -> impl Iterator<Item = &'a Signal> {
+        let outer = |signal: &&'a Signal| self.signal(&signal.present.as_ref()?.switch);
+        core::iter::successors(Some(signal), outer).take(self.signals.len() + 1)
+    }
+
     fn check_length(&self, got: usize) -> Result<(), CodecError> {
         if got == usize::from(self.len) {
             return Ok(());
@@ -178,6 +194,12 @@ impl Message {
 }
 
 impl Signal {
+    /// True for a CRC where end-to-end protection has it.
+    pub(crate) fn is_crc(&self) -> bool {
+        let field = &self.field;
+        self.name == "Crc" && field.length == 8 && field.start == CRC_START && !field.big_endian
+    }
+
     /// True for a whole number without unit: a count, a state, a flag.
     #[must_use]
     pub fn is_plain_integer(&self) -> bool {

@@ -3,42 +3,45 @@
 
 use can_dbc::{Comment, Dbc, MessageId, ValueDescription};
 
-use crate::Problem;
+use crate::{Harm, Problem};
 
 /// Editors keep signals without a message here; no frame has this identifier.
 const NO_MESSAGE: &str = "VECTOR__INDEPENDENT_SIG_MSG";
 
-/// Every such statement.
-pub(crate) fn stray(dbc: &Dbc) -> Vec<Problem> {
+/// Every such statement, with the identifier it names. Those on how bits are read were meant for some
+/// signal of the message, if it has that identifier.
+pub(crate) fn stray(dbc: &Dbc) -> Vec<(u32, Problem)> {
     let mut problems = Vec::new();
-    let mut say = |keyword: &str, id: MessageId, signal: Option<&str>| {
+    let mut say = |keyword: &str, id: MessageId, signal: Option<&str>, harm: Harm| {
         if declares(dbc, id, signal) {
             return;
         }
         let id = id.raw();
         let place =
             signal.map_or_else(|| format!("{keyword} {id}"), |s| format!("{keyword} {id} {s}"));
-        problems
-            .push(Problem { place, what: "is about nothing declared; mend its name".to_owned() });
+        let what = "is about nothing declared; mend its name".to_owned();
+        problems.push((id, Problem { place, what, harm, signal: None }));
     };
     for statement in &dbc.signal_extended_value_type_list {
-        say("SIG_VALTYPE_", statement.message_id, Some(&statement.signal_name));
+        say("SIG_VALTYPE_", statement.message_id, Some(&statement.signal_name), Harm::Misread);
     }
     for statement in &dbc.extended_multiplex {
-        say("SG_MUL_VAL_", statement.message_id, Some(&statement.signal_name));
+        say("SG_MUL_VAL_", statement.message_id, Some(&statement.signal_name), Harm::Misread);
     }
     for statement in &dbc.value_descriptions {
         if let ValueDescription::Signal { message_id, name, .. } = statement {
-            say("VAL_", *message_id, Some(name));
+            say("VAL_", *message_id, Some(name), Harm::Untidy);
         }
     }
     for statement in &dbc.attribute_values_message {
-        say("BA_", statement.message_id, None);
+        say("BA_", statement.message_id, None, Harm::Untidy);
     }
     for statement in &dbc.comments {
         match statement {
-            Comment::Message { id, .. } => say("CM_", *id, None),
-            Comment::Signal { message_id, name, .. } => say("CM_", *message_id, Some(name)),
+            Comment::Message { id, .. } => say("CM_", *id, None, Harm::Untidy),
+            Comment::Signal { message_id, name, .. } => {
+                say("CM_", *message_id, Some(name), Harm::Untidy)
+            }
             _ => {}
         }
     }

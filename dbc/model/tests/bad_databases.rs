@@ -108,7 +108,8 @@ fn what_would_pass_in_silence_is_refused() {
         (&crc, "", "M: has a CRC that nothing checks"),
         (&crc, "BA_ \"E2eDataId\" BO_ 5 65536;", "M: has a CRC that nothing checks"),
         (ring, "SG_MUL_VAL_ 5 P Q 0-0;\nSG_MUL_VAL_ 5 Q P 0-0;", "M.P: is multiplexed by itself"),
-        (nested, "", "m.dbc:9: M.Q has several switches to go by"),
+        (nested, "", "m.dbc:11: M.Q has several switches to go by"),
+        (&x.replace("0|8", "0|54"), "", "M.X: has 54 bits, and numbers are exact to 53"),
         (&x.replace("SG_ X", "SG_ Type"), "", "M: \"type\": cannot be a name in Rust"),
         (&x.replace("\"\"", "\"l/min\""), "", "M: \"x_l/min\": cannot be a name in Rust"),
         (&x.replace("0|8", "-3|8"), "", "m.dbc:10: Invalid Uint value: '-3'"),
@@ -130,9 +131,13 @@ fn a_named_value_that_no_byte_holds_is_refused() {
 fn an_identifier_or_length_without_a_frame_is_refused() {
     let plain = |from: &str, to: &str| Database::parse(&GOOD.replace(from, to), "bad.dbc");
     for id in ["4096", "70000"] {
-        let error = plain("2147483905", id).unwrap_err().to_string();
+        let error = generate(&plain("2147483905", id).unwrap()).unwrap_err().to_string();
         assert!(error.starts_with(&format!("bad.dbc:9: Target: {id} has more than 11")), "{error}");
     }
+    let error = generate(&plain("2147483905", "2684354561").unwrap()).unwrap_err().to_string();
+    assert!(error.contains("2684354561 has more than 29 bits"), "{error}");
+    let error = plain("BO_ 2147483905 Target", "BO_ 4294967296 Target").unwrap_err();
+    assert_eq!(error.line, 9, "{error}");
     let long = plain("Target: 8 A", "Target: 64 A").unwrap();
     let error = generate(&long).unwrap_err().to_string();
     assert!(error.contains("Target: has 64 bytes; a classic CAN frame has up to 8"), "{error}");
@@ -182,8 +187,8 @@ fn a_syntax_error_is_named_with_file_and_line() {
 
 #[test]
 fn a_factor_of_zero_is_refused_with_its_line() {
-    let error = Database::parse(&GOOD.replacen("(2,0)", "(0,0)", 1), "bad.dbc").unwrap_err();
-    assert!(error.to_string().starts_with("bad.dbc:9: Target.Stroke: factor"), "{error}");
+    let error = refusal("(2,0)", "(0,0)");
+    assert!(error.starts_with("bad.dbc:10: Target.Stroke: factor"), "{error}");
 }
 
 proptest! {

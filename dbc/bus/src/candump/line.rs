@@ -24,9 +24,24 @@ pub enum BadLine {
     /// Something other than a direction follows the data.
     #[error("something other than R or T follows the data")]
     Trailing,
+    /// What candump shows on a screen, with the number of bytes in square brackets.
+    #[error("candump as on a screen, not a log")]
+    Screen,
     /// Longer than any line of a log.
-    #[error("longer than any line of a log: is this a candump file?")]
+    #[error("longer than any line of a log")]
     TooLong,
+}
+
+impl BadLine {
+    /// What to do about it.
+    #[must_use]
+    pub const fn remedy(self) -> &'static str {
+        match self {
+            Self::Screen => "record with `candump -L`",
+            Self::TooLong => "give a file that candump -L wrote",
+            _ => "mend or remove the line",
+        }
+    }
 }
 
 /// A line that could be read.
@@ -46,6 +61,12 @@ pub(super) enum Line<'a> {
 
 /// Reads one line, without its line feed.
 pub(super) fn parse(line: &[u8]) -> Result<Line<'_>, BadLine> {
+    let bytes_shown = |word: &[u8]| word.starts_with(b"[") && word.ends_with(b"]");
+    let shown = || line.split(u8::is_ascii_whitespace).any(bytes_shown);
+    read(line).map_err(|what| if shown() { BadLine::Screen } else { what })
+}
+
+fn read(line: &[u8]) -> Result<Line<'_>, BadLine> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let Some(time) = words.next() else {
         return Ok(Line::Blank);
@@ -206,6 +227,12 @@ mod tests {
             ("(1.5) can0 123#+A", BadLine::Data),
             ("(1.5) can0 123#112233445566778899", BadLine::Data),
             ("(1.5) can0 123#R9", BadLine::Data),
+            ("  can0  123   [2]  AB CD", BadLine::Screen),
+            (
+                " (1758440579.175206)  can0  0CFF4027   [8]  55 55 55 55 55 55 12 99",
+                BadLine::Screen,
+            ),
+            (" (0.000000)  can0  TX - -  123  [00]", BadLine::Screen),
             ("(1.5) can0 123#AB X", BadLine::Trailing),
             ("(1.5) can0 123#AB R R", BadLine::Trailing),
         ] {

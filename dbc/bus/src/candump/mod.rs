@@ -8,7 +8,7 @@
 //! identifier, eight a 29-bit one. After the data some writers say who sent it: ` T` this host,
 //! ` R` another node (candump `-x`, python-can).
 //!
-//! Recognised, counted and passed over, as this bench has no use for them: remote frames
+//! Recognised, counted and passed over: remote frames
 //! (`123#R`), error frames (bit 29 of an eight-digit identifier), CAN FD (`123##1..`). Anything
 //! else is an error that names the line.
 

@@ -13,7 +13,7 @@ const LINE_BYTES: u64 = 512;
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// A line in the log is not candump's.
-    #[error("{log}:{line}: {what}; mend or remove the line")]
+    #[error("{log}:{line}: {what}; {}", what.remedy())]
     Bad {
         /// The log's name.
         log: Arc<str>,
@@ -44,7 +44,7 @@ pub enum ReadError {
     },
 }
 
-/// Frames that a log holds and this bench has no use for.
+/// Frames that a log holds and that are of no kind that is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Skipped {
     /// Remote frames.
@@ -84,6 +84,7 @@ pub struct Reader<R> {
     bytes: Vec<u8>,
     interface: Arc<str>,
     skipped: Skipped,
+    skipped_line: Option<u64>,
     accepts_cut: bool,
     cut_line: Option<u64>,
     done: bool,
@@ -99,6 +100,7 @@ impl<R: BufRead> Reader<R> {
             bytes: Vec::with_capacity(128),
             interface: "".into(),
             skipped: Skipped::default(),
+            skipped_line: None,
             accepts_cut: false,
             cut_line: None,
             done: false,
@@ -131,6 +133,12 @@ impl<R: BufRead> Reader<R> {
         self.skipped
     }
 
+    /// Line of the first frame that was passed over, counted from 1.
+    #[must_use]
+    pub fn skipped_line(&self) -> Option<u64> {
+        self.skipped_line
+    }
+
     /// The next data frame, `None` at the end.
     ///
     /// # Errors
@@ -143,6 +151,10 @@ impl<R: BufRead> Reader<R> {
 
     fn read_on(&mut self) -> Result<Option<Record>, ReadError> {
         while !self.done && self.read_line()? {
+            // Some editors put it before a text that they have saved.
+            if self.line == 1 && self.bytes.starts_with("\u{FEFF}".as_bytes()) {
+                self.bytes.drain(..'\u{FEFF}'.len_utf8());
+            }
             let line = parse(&self.bytes).map_err(|what| self.bad(what))?;
             match line {
                 Line::Data { at, interface, frame, direction } => {
@@ -155,8 +167,9 @@ impl<R: BufRead> Reader<R> {
                 Line::Remote => self.skipped.remote += 1,
                 Line::Error => self.skipped.error += 1,
                 Line::Fd => self.skipped.fd += 1,
-                Line::Blank => {}
+                Line::Blank => continue,
             }
+            self.skipped_line.get_or_insert(self.line);
         }
         Ok(None)
     }
@@ -215,8 +228,18 @@ mod tests {
         assert_eq!(records.len(), 2);
         assert_eq!((&*records[0].interface, &*records[1].interface), ("can0", "can1"));
         assert_eq!(reader.skipped(), Skipped { remote: 1, ..Skipped::default() });
+        assert_eq!(reader.skipped_line(), Some(3));
         assert_eq!((reader.line(), reader.cut_line()), (4, None));
         assert!(reader.next().is_none());
+    }
+
+    #[test]
+    fn a_mark_before_the_first_line_is_no_part_of_it() {
+        let log = format!("\u{FEFF}{LOG}");
+        assert_eq!(Reader::new(log.as_bytes(), "a.log").filter(Result::is_ok).count(), 2);
+        let late = format!("{LOG}\u{FEFF}{LOG}");
+        let error = Reader::new(late.as_bytes(), "a.log").last().unwrap().unwrap_err();
+        assert!(matches!(error, ReadError::Bad { line: 5, .. }), "{error}");
     }
 
     #[test]

@@ -1,50 +1,42 @@
 //! Frames of a log to samples of channels, as the log's own DBC and a mapping say.
 
+mod tap;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use xt28_dbc::{CanId, Frame};
-use xt28_dbc_model::{Database, Message, Signal, ValueError};
+use xt28_dbc::CanId;
+use xt28_dbc_model::{Database, Message, Signal, text};
 
 use crate::{Channel, GapError, Mapping, Need, Source};
+
+pub(crate) use tap::{Tap, Unread};
 
 /// Reads channels from frames. Knows no identifier and no layout of its own.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     messages: BTreeMap<u32, Tap>,
     names: BTreeMap<Channel, String>,
-    missing: Vec<Channel>,
-}
-
-/// A message that carries channels.
-#[derive(Clone, Debug)]
-pub(crate) struct Tap {
-    message: Message,
-    readings: Vec<Reading>,
-}
-
-#[derive(Clone, Debug)]
-struct Reading {
-    channel: Channel,
-    signal: Signal,
-    si_per: f64,
 }
 
 impl Decoder {
-    /// A decoder for the DBC at `path`, with the channels where `mapping` has them.
+    /// A decoder for the DBC at `path`, in UTF-8 or Windows-1252, with the channels where `mapping`
+    /// has them.
     ///
     /// # Errors
-    /// [`GapError::Dbc`], [`GapError::Missing`] for a required channel, [`GapError::Unit`].
+    /// As [`Decoder::parse`], and [`GapError::Read`].
     pub fn load(path: &Path, mapping: &Mapping) -> Result<Self, GapError> {
-        let text = std::fs::read_to_string(path).map_err(|source| GapError::read(path, source))?;
-        Self::parse(&text, path, mapping)
+        let bytes = std::fs::read(path).map_err(|source| GapError::read(path, source))?;
+        Self::parse(&text(&bytes), path, mapping)
     }
 
-    /// A decoder for a DBC's text; `path` names it in errors.
+    /// A decoder for a DBC's text; `path` names it in errors. What is wrong with messages that carry
+    /// no channel is of no matter.
     ///
     /// # Errors
-    /// [`GapError::Dbc`], [`GapError::Missing`] for a required channel, [`GapError::Unit`].
+    /// [`GapError::Dbc`], [`GapError::Layout`] for a signal that would be misread,
+    /// [`GapError::Missing`] for a required channel, [`GapError::Misnamed`] for one that a mapping
+    /// file names, [`GapError::Unit`].
     pub fn parse(text: &str, path: &Path, mapping: &Mapping) -> Result<Self, GapError> {
         let database = Database::parse(text, &path.display().to_string())
             .map_err(|error| GapError::Dbc { problem: error.to_string() })?;
@@ -52,14 +44,9 @@ impl Decoder {
             (channel, format!("{}.{}", source.message, source.signal))
         };
         let names = mapping.iter().map(name).collect();
-        let mut decoder = Self { messages: BTreeMap::new(), names, missing: Vec::new() };
+        let mut decoder = Self { messages: BTreeMap::new(), names };
         for (channel, source) in mapping.iter() {
-            let Some(message) = database.message_named(&source.message) else {
-                decoder.miss(path, mapping, channel, None)?;
-                continue;
-            };
-            let Some(signal) = message.signal(&source.signal) else {
-                decoder.miss(path, mapping, channel, Some(message))?;
+            let Some((message, signal)) = find(&database, path, mapping, channel, source)? else {
                 continue;
             };
             let unit = source.unit.as_deref().unwrap_or(&signal.unit);
@@ -70,18 +57,10 @@ impl Decoder {
                 channel: channel.to_string(),
                 known: channel.dimension().units(),
             })?;
-            let reading =
-                Reading { channel, signal: signal.clone(), si_per: si_per * source.scale };
             let tap = decoder.messages.entry(message.id).or_insert_with(|| Tap::new(message));
-            tap.readings.push(reading);
+            tap.add(channel, signal, si_per * source.scale);
         }
         Ok(decoder)
-    }
-
-    /// Channels that the DBC lacks; none that a replay needs.
-    #[must_use]
-    pub fn missing(&self) -> &[Channel] {
-        &self.missing
     }
 
     /// Name of the message that `channel` is read from.
@@ -100,19 +79,49 @@ impl Decoder {
     pub(crate) fn tap(&self, id: CanId) -> Option<&Tap> {
         self.messages.get(&id.dbc())
     }
+}
 
-    fn miss(
-        &mut self,
-        path: &Path,
-        mapping: &Mapping,
-        channel: Channel,
-        message: Option<&Message>,
-    ) -> Result<(), GapError> {
-        if channel.need() == Need::Optional {
-            self.missing.push(channel);
-            return Ok(());
+/// Where the database has `channel`; `None` for one that nobody asked for and no replay needs.
+fn find<'a>(
+    database: &'a Database,
+    path: &Path,
+    mapping: &Mapping,
+    channel: Channel,
+    source: &Source,
+) -> Result<Option<(&'a Message, &'a Signal)>, GapError> {
+    let refuse = |place: String, problem: String| {
+        Err(GapError::Layout { place, problem, channel: channel.to_string() })
+    };
+    if let Some(why) = database.why_unusable(&source.message, &source.signal) {
+        return refuse(format!("{}:{}", why.file, why.line), why.problem.clone());
+    }
+    let message = database.message_named(&source.message);
+    let Some((message, signal)) = message.and_then(|m| Some((m, m.signal(&source.signal)?))) else {
+        if let Some((file, line)) = mapping.named_at(channel) {
+            return Err(GapError::Misnamed {
+                path: file.to_owned(),
+                line,
+                channel: channel.to_string(),
+                what: what(source, message),
+                dbc: path.to_owned(),
+            });
         }
-        Err(missing(path.to_owned(), mapping, channel, message))
+        if channel.need() == Need::Optional {
+            return Ok(None);
+        }
+        return Err(missing(path.to_owned(), mapping, channel, message));
+    };
+    match database.misread(message, signal) {
+        Some(problem) => refuse(path.display().to_string(), problem.to_string()),
+        None => Ok(Some((message, signal))),
+    }
+}
+
+/// What a source names that is not there; `message` where its message is.
+fn what(source: &Source, message: Option<&Message>) -> String {
+    match message {
+        Some(_) => format!("signal `{}` in message `{}`", source.signal, source.message),
+        None => format!("message `{}`", source.message),
     }
 }
 
@@ -126,54 +135,11 @@ fn missing(
     let Some(source) = mapping.source(channel) else {
         return GapError::Missing { path, what: "signal".into(), channels: channel.to_string() };
     };
+    let what = what(source, message);
     if message.is_some() {
-        let what = format!("signal `{}` in message `{}`", source.signal, source.message);
         return GapError::Missing { path, what, channels: channel.to_string() };
     }
     let orphans = mapping.iter().filter(|(_, other)| other.message == source.message);
     let channels: Vec<String> = orphans.map(|(channel, _)| channel.to_string()).collect();
-    let what = format!("message `{}`", source.message);
     GapError::Missing { path, what, channels: channels.join(", ") }
-}
-
-impl Tap {
-    fn new(message: &Message) -> Self {
-        Self { message: message.clone(), readings: Vec::new() }
-    }
-
-    /// Name of the message.
-    pub(crate) fn name(&self) -> &str {
-        &self.message.name
-    }
-
-    /// Bytes that a frame of it has.
-    pub(crate) fn bytes(&self) -> usize {
-        usize::from(self.message.len)
-    }
-
-    /// Time from one frame to the next, where the DBC says.
-    pub(crate) fn period(&self) -> Option<Duration> {
-        let period_ms = u64::from(self.message.period_ms);
-        (period_ms > 0).then(|| Duration::from_millis(period_ms))
-    }
-
-    /// Channels it carries.
-    pub(crate) fn channels(&self) -> impl Iterator<Item = Channel> {
-        self.readings.iter().map(|reading| reading.channel)
-    }
-
-    /// Values in SI that `frame` carries, or why one cannot be believed. A frame of another length
-    /// carries none, a multiplexed signal is there when its switch says so.
-    pub(crate) fn values(
-        &self,
-        frame: &Frame,
-    ) -> impl Iterator<Item = (Channel, Result<f64, ValueError>)> {
-        let data = *frame;
-        let readable = frame.data().len() == self.bytes();
-        let present =
-            move |r: &&Reading| readable && self.message.is_present(&r.signal, data.data());
-        self.readings.iter().filter(present).map(move |r| {
-            (r.channel, r.signal.field.read(data.data()).map(|value| value * r.si_per))
-        })
-    }
 }

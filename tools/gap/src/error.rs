@@ -53,6 +53,32 @@ pub enum GapError {
         /// Channels that need it.
         channels: String,
     },
+    /// A channel's signal cannot be read as the DBC has it.
+    #[error("{place}: {problem}; {channel} should come from there")]
+    Layout {
+        /// The DBC, with the line where one is known.
+        place: String,
+        /// What is wrong, and what to do.
+        problem: String,
+        /// The channel.
+        channel: String,
+    },
+    /// A mapping file names what the DBC has not.
+    #[error(
+        "{path}:{line}: {channel} should come from {what}, and there is none in {dbc}; mend the name, or leave the line out"
+    )]
+    Misnamed {
+        /// The mapping file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// The channel.
+        channel: String,
+        /// "message `PosFront`", or "signal `FR` in message `PosFront`".
+        what: String,
+        /// The DBC.
+        dbc: PathBuf,
+    },
     /// A signal's unit is not one of its channel.
     #[error(
         "{path}: signal `{signal}` is in `{unit}`, which is no unit of {channel} ({known}); give the right one in a mapping file"

@@ -1,7 +1,7 @@
 //! Which signal of a DBC is which channel: the built-in names, and a file where a log has others.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -16,6 +16,9 @@ const BUILTIN: &str = include_str!("mapping.toml");
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mapping {
     sources: BTreeMap<Channel, Source>,
+    /// The user's file, and the line in it of each channel that it names.
+    file: PathBuf,
+    named: BTreeMap<Channel, usize>,
 }
 
 /// Where one channel is found.
@@ -55,10 +58,12 @@ struct EntryTable {
 impl Default for Mapping {
     /// The names of this bench's own database.
     fn default() -> Self {
-        let mut mapping = Self { sources: BTreeMap::new() };
+        let (sources, named) = (BTreeMap::new(), BTreeMap::new());
+        let mut mapping = Self { sources, file: PathBuf::new(), named };
         mapping
             .read(BUILTIN, Path::new("mapping.toml"))
             .expect("the built-in mapping is valid: a test reads it");
+        mapping.named.clear();
         mapping
     }
 }
@@ -78,7 +83,7 @@ impl Mapping {
     /// # Errors
     /// [`GapError::Toml`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, GapError> {
-        let mut mapping = Self::default();
+        let mut mapping = Self { file: path.to_owned(), ..Self::default() };
         mapping.read(text, path)?;
         Ok(mapping)
     }
@@ -94,6 +99,11 @@ impl Mapping {
         self.sources.iter().map(|(channel, source)| (*channel, source))
     }
 
+    /// The user's file and the line in it that names `channel`'s source; `None` where it is built in.
+    pub(crate) fn named_at(&self, channel: Channel) -> Option<(&Path, usize)> {
+        self.named.get(&channel).map(|line| (self.file.as_path(), *line))
+    }
+
     fn read(&mut self, text: &str, path: &Path) -> Result<(), GapError> {
         let refuse = |(line, problem)| GapError::Toml { path: path.to_owned(), line, problem };
         let file: MappingFile =
@@ -105,6 +115,7 @@ impl Mapping {
             })?;
             let source = entry.source().map_err(|problem| refuse((line, problem)))?;
             self.sources.insert(channel, source);
+            self.named.insert(channel, line);
         }
         Ok(())
     }

@@ -95,9 +95,19 @@ pub enum GapError {
         /// Units that would do.
         known: &'static str,
     },
-    /// The log is not candump's, or is cut.
+    /// The log is not candump's.
     #[error(transparent)]
-    Log(#[from] ReadError),
+    Log(ReadError),
+    /// The log ends in the middle of a line, or of the stream it is packed in.
+    #[error(
+        "{log}:{line}: log is cut in the middle of this line; say --accept-cut to take what is there, or copy the log again"
+    )]
+    Cut {
+        /// The log.
+        log: String,
+        /// Line, from 1.
+        line: u64,
+    },
     /// An MCAP file that cannot be read, or holds no CAN frames.
     #[error("{log}: at message {message}: {problem}")]
     Recording {
@@ -110,7 +120,7 @@ pub enum GapError {
     },
     /// The log holds no sample of something that a replay needs.
     #[error(
-        "{log}: no frame `{message}` in the log, which {channel} comes from, though {known} of its {frames} frames are known; check that log and DBC belong together"
+        "{log}: no frame `{message}` in the log, which {channel} comes from, though {known} of its {frames} frames are known; check that log and DBC belong together{why}"
     )]
     Silent {
         /// The log.
@@ -123,10 +133,28 @@ pub enum GapError {
         known: u64,
         /// Frames of the log.
         frames: u64,
+        /// A fault of the log that may have cost it those frames; empty without one.
+        why: String,
+    },
+    /// The log holds frames for something that a replay needs, and none can be believed.
+    #[error("{fault}; nothing is left of {channel}, which a replay needs")]
+    AllLeftOut {
+        /// Why the first of them was left out, with log and line.
+        fault: String,
+        /// The channel.
+        channel: String,
+    },
+    /// The log holds no frame at all.
+    #[error("{log}: is empty: no CAN frame in it{why}")]
+    Empty {
+        /// The log.
+        log: String,
+        /// What it holds instead; empty without anything.
+        why: String,
     },
     /// No frame of the log is of a message that the DBC and the mapping know.
     #[error(
-        "{log}: none of its {frames} frames ({ids} and the like) is of a message that DBC and mapping know; give the DBC that the log was sent with"
+        "{log}: none of its {frames} frames ({ids} and the like) is of a message that DBC and mapping know; give the DBC that the log was sent with{why}"
     )]
     Stranger {
         /// The log.
@@ -135,6 +163,8 @@ pub enum GapError {
         frames: u64,
         /// Some of their identifiers.
         ids: String,
+        /// A fault of the log that may have cost it others; empty without one.
+        why: String,
     },
     /// `about.toml` does not speak of this log.
     #[error("{path}: no [[run]] with file = \"{log}\"; add it, or give the terrain with --terrain")]
@@ -254,6 +284,15 @@ pub enum GapError {
         /// Who chose so.
         why: String,
     },
+}
+
+impl From<ReadError> for GapError {
+    fn from(error: ReadError) -> Self {
+        match error {
+            ReadError::Cut { log, line } => Self::Cut { log: log.to_string(), line },
+            error => Self::Log(error),
+        }
+    }
 }
 
 impl GapError {

@@ -1,24 +1,24 @@
 //! A field log as time series: candump, plain or gzipped, or MCAP, read through the log's own DBC.
 
 mod attendance;
+mod gzip;
 mod intake;
 mod order;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 
-use flate2::bufread::MultiGzDecoder;
 use xt28_bus::candump::Reader;
 
 use crate::recorded::{self, MAGIC};
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
+use gzip::{Failed, Gzip};
 use intake::Intake;
-
-/// First two bytes of gzip (RFC 1952); no candump line begins so.
-const GZIP_MAGIC: [u8; 2] = [0x1F, 0x8B];
 
 /// What a log measured and what it commanded, against seconds from its first frame.
 #[derive(Clone, Debug)]
@@ -31,66 +31,110 @@ pub struct FieldLog {
 }
 
 impl FieldLog {
-    /// Reads the log at `path`. With `accept_cut`, a log that ends in the middle of a line is taken
-    /// as ending before it, and says so in [`FieldLog::faults`].
+    /// Reads the log at `path`: candump's or an MCAP file, gzipped or not, as its content says. With
+    /// `accept_cut`, a log that ends in the middle of a line is taken as ending before it, and says so
+    /// in [`FieldLog::faults`].
     ///
     /// # Errors
-    /// [`GapError::Read`], [`GapError::Log`], [`GapError::Recording`], or [`GapError::Silent`].
+    /// As [`FieldLog::read`] and [`FieldLog::read_mcap`], and [`GapError::Read`].
     pub fn load(path: &Path, decoder: &Decoder, accept_cut: bool) -> Result<Self, GapError> {
         let file = File::open(path).map_err(|source| GapError::read(path, source))?;
         let mut input = BufReader::new(file);
         let head = input.fill_buf().map_err(|source| GapError::read(path, source))?;
         let name = path.display().to_string();
-        if head.starts_with(MAGIC) {
-            return Self::read_mcap(input, &name, decoder, accept_cut);
+        if !head.starts_with(&gzip::MAGIC) {
+            return Self::of_bytes(input, &name, decoder, accept_cut)?.finish(&name, decoder);
         }
-        if head.starts_with(&GZIP_MAGIC) {
-            let input = BufReader::new(MultiGzDecoder::new(input));
-            Self::read(input, &name, decoder, accept_cut)
-        } else {
-            Self::read(input, &name, decoder, accept_cut)
+        let trailing = Rc::new(Cell::new(false));
+        let input = BufReader::new(Gzip::new(input, Rc::clone(&trailing)));
+        let mut intake = Self::of_bytes(input, &name, decoder, accept_cut)?;
+        if trailing.get() {
+            intake.fault_at_end(FaultKind::Trailing);
         }
+        intake.finish(&name, decoder)
     }
 
     /// Reads a log from `input`; `name` is its name in errors.
     ///
     /// # Errors
-    /// [`GapError::Log`] or [`GapError::Silent`].
+    /// [`GapError::Log`] or [`GapError::Cut`]; [`GapError::Empty`], [`GapError::Stranger`],
+    /// [`GapError::Silent`] or [`GapError::AllLeftOut`] for one that lacks what a replay needs;
+    /// [`GapError::ClockSteps`].
     pub fn read(
         input: impl BufRead,
         name: &str,
         decoder: &Decoder,
         accept_cut: bool,
     ) -> Result<Self, GapError> {
-        let reader = Reader::new(input, name);
-        let mut reader = if accept_cut { reader.accepting_cut() } else { reader };
-        let mut intake = Intake::default();
-        while let Some(record) = reader.read()? {
-            intake.take(decoder, &record, reader.line());
-        }
-        let cut = reader.cut_line().map(|line| (line, FaultKind::Cut));
-        intake.finish(name.into(), decoder, cut.into_iter().collect())
+        Self::of_candump(input, name, decoder, accept_cut)?.finish(name, decoder)
     }
 
     /// Reads a log from an MCAP file's bytes; `name` is its name in errors.
     ///
     /// # Errors
-    /// [`GapError::Recording`] or [`GapError::Silent`].
+    /// [`GapError::Recording`], and for what it lacks as [`FieldLog::read`].
     pub fn read_mcap(
         input: impl Read,
         name: &str,
         decoder: &Decoder,
         accept_cut: bool,
     ) -> Result<Self, GapError> {
+        Self::of_mcap(input, name, decoder, accept_cut)?.finish(name, decoder)
+    }
+
+    /// All of a log that is candump's or an MCAP file, as its first bytes say.
+    fn of_bytes(
+        mut input: impl BufRead,
+        name: &str,
+        decoder: &Decoder,
+        accept_cut: bool,
+    ) -> Result<Intake, GapError> {
+        match input.fill_buf() {
+            Ok(head) if head.starts_with(MAGIC) => Self::of_mcap(input, name, decoder, accept_cut),
+            Ok(_) => Self::of_candump(input, name, decoder, accept_cut),
+            // It says so only once; what it means is for whoever reads the lines.
+            Err(error) => {
+                let input = BufReader::new(Failed(Some(error)));
+                Self::of_candump(input, name, decoder, accept_cut)
+            }
+        }
+    }
+
+    fn of_candump(
+        input: impl BufRead,
+        name: &str,
+        decoder: &Decoder,
+        accept_cut: bool,
+    ) -> Result<Intake, GapError> {
+        let reader = Reader::new(input, name);
+        let mut reader = if accept_cut { reader.accepting_cut() } else { reader };
+        let mut intake = Intake::default();
+        while let Some(record) = reader.read()? {
+            intake.take(decoder, &record, reader.line());
+        }
+        if let Some(line) = reader.skipped_line() {
+            intake.fault(line, FaultKind::passed_over(reader.skipped()));
+        }
+        if let Some(line) = reader.cut_line() {
+            intake.fault(line, FaultKind::Cut);
+        }
+        Ok(intake)
+    }
+
+    fn of_mcap(
+        input: impl Read,
+        name: &str,
+        decoder: &Decoder,
+        accept_cut: bool,
+    ) -> Result<Intake, GapError> {
         let mut intake = Intake::default();
         let remains = recorded::read(input, name, accept_cut, |record, number| {
             intake.take(decoder, record, number);
         })?;
-        let cut = remains.cut.map(|number| (number, FaultKind::Cut));
-        let broken = remains
-            .broken
-            .map(|(number, problem, messages)| (number, FaultKind::Broken { problem, messages }));
-        intake.finish(name.into(), decoder, cut.into_iter().chain(broken).collect())
+        for (number, kind) in remains.faults() {
+            intake.fault(number, kind);
+        }
+        Ok(intake)
     }
 
     /// A log of `series` that nobody recorded, `duration_s` s long.

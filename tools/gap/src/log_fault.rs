@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
+use xt28_bus::candump::Skipped;
+
 /// Something a reader of the result must know of its log. Displays as one line with file and line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogFault {
@@ -19,6 +21,8 @@ pub struct LogFault {
 pub enum FaultKind {
     /// The log ends in the middle of its last line, which is left out.
     Cut,
+    /// Bytes follow a gzip stream that are none.
+    Trailing,
     /// Frames come later than merged sources do, but soon enough to be put in order.
     OutOfOrder {
         /// The largest step back, s.
@@ -58,7 +62,7 @@ pub enum FaultKind {
         /// The longest time without, s.
         longest_s: f64,
     },
-    /// Frames have another number of bytes than the DBC says; they are left out.
+    /// Frames have fewer bytes than the DBC says; they are left out.
     WrongLength {
         /// Message.
         message: String,
@@ -68,6 +72,35 @@ pub enum FaultKind {
         wanted: usize,
         /// Frames left out.
         frames: u64,
+    },
+    /// Frames have more bytes than the DBC says; those are taken for padding.
+    Padded {
+        /// Message.
+        message: String,
+        /// Bytes in the first such frame.
+        found: usize,
+        /// Bytes in the DBC.
+        wanted: usize,
+        /// Such frames.
+        frames: u64,
+    },
+    /// The CRC of frames is not that of their data; they are left out.
+    BadCrc {
+        /// Message.
+        message: String,
+        /// When the first came, s from the log's first frame.
+        at_s: f64,
+        /// Frames left out.
+        frames: u64,
+    },
+    /// Frames of other kinds than classic data frames, of which nothing is read.
+    PassedOver {
+        /// Remote frames.
+        remote: u64,
+        /// Error frames: the bus was disturbed.
+        error: u64,
+        /// CAN FD frames.
+        fd: u64,
     },
     /// A value is not a number, or is outside the range that the DBC gives; it is left out.
     Unbelievable {
@@ -80,11 +113,40 @@ pub enum FaultKind {
     },
 }
 
+impl FaultKind {
+    pub(crate) const fn passed_over(skipped: Skipped) -> Self {
+        Self::PassedOver { remote: skipped.remote, error: skipped.error, fd: skipped.fd }
+    }
+
+    /// Whether it leaves out frames of `message` or values of `channel`.
+    pub(crate) fn leaves_out(&self, message: &str, channel: &str) -> bool {
+        match self {
+            Self::WrongLength { message: of, .. } | Self::BadCrc { message: of, .. } => {
+                of == message
+            }
+            Self::Unbelievable { channel: of, .. } => of == channel,
+            _ => false,
+        }
+    }
+
+    /// Whether it leaves out frames of which nobody knows what they were.
+    pub(crate) const fn leaves_out_any(&self) -> bool {
+        matches!(
+            self,
+            Self::Cut | Self::Broken { .. } | Self::PassedOver { .. } | Self::ClockBack { .. }
+        )
+    }
+}
+
 impl fmt::Display for LogFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: ", self.log, self.line)?;
         match &self.kind {
             FaultKind::Cut => write!(f, "log is cut here; what is not whole is left out"),
+            FaultKind::Trailing => write!(
+                f,
+                "behind the gzip stream that ends here the file goes on with something else, which is left out"
+            ),
             FaultKind::OutOfOrder { by_s, frames } => write!(
                 f,
                 "times go back by up to {:.1} ms; {frames} frames are put in order, so cut the log there if the clock was set",
@@ -109,6 +171,18 @@ impl fmt::Display for LogFault {
             FaultKind::WrongLength { message, found, wanted, frames } => write!(
                 f,
                 "{message} has {found} bytes where the DBC says {wanted}; {frames} such frames are left out, so check that log and DBC belong together"
+            ),
+            FaultKind::Padded { message, found, wanted, frames } => write!(
+                f,
+                "{message} has {found} bytes where the DBC says {wanted}; in {frames} such frames the rest is taken for padding, so check that the DBC is of this version"
+            ),
+            FaultKind::BadCrc { message, at_s, frames } => write!(
+                f,
+                "{message} has a wrong CRC, first at {at_s:.3} s; {frames} such frames are left out, so check E2eDataId in the DBC if those are all"
+            ),
+            FaultKind::PassedOver { remote, error, fd } => write!(
+                f,
+                "from here on {error} error frames, {remote} remote frames and {fd} CAN FD frames; nothing is read from them"
             ),
             FaultKind::Unbelievable { channel, problem, values } => write!(
                 f,

@@ -7,15 +7,15 @@
 mod frame;
 
 use std::collections::BTreeSet;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::sync::Arc;
 
 use mcap::io::MessageReader;
 use mcap::sans_io::LinearReaderOptions;
 use mcap::{Channel as Topic, McapError};
-use xt28_bus::candump::Record;
+use xt28_bus::candump::{Record, Skipped};
 
-use crate::GapError;
+use crate::{FaultKind, GapError};
 use frame::{Encoding, Seen};
 
 /// First bytes of an MCAP file (its specification); no candump line begins so.
@@ -32,6 +32,22 @@ pub(crate) struct Remains {
     pub(crate) cut: Option<u64>,
     /// First message that is no frame, what is wrong with it, and how many there are.
     pub(crate) broken: Option<(u64, String, u64)>,
+    /// First message that is a frame of a kind that is not read.
+    pub(crate) skipped_at: Option<u64>,
+    /// How many of those there are.
+    pub(crate) skipped: Skipped,
+}
+
+impl Remains {
+    /// The same as faults of a log.
+    pub(crate) fn faults(self) -> Vec<(u64, FaultKind)> {
+        let cut = self.cut.map(|number| (number, FaultKind::Cut));
+        let broken = self
+            .broken
+            .map(|(number, problem, messages)| (number, FaultKind::Broken { problem, messages }));
+        let skipped = self.skipped_at.map(|number| (number, FaultKind::passed_over(self.skipped)));
+        [cut, broken, skipped].into_iter().flatten().collect()
+    }
 }
 
 /// Hands every frame in `input` to `take`, with the number of its message in the file, from 1. `log`
@@ -60,11 +76,11 @@ pub(crate) fn read(
         number += 1;
         let message = match message {
             Ok(message) => message,
-            Err(McapError::UnexpectedEof) if accept_cut => {
+            Err(error) if is_cut(&error) && accept_cut => {
                 remains.cut = Some(number);
                 break;
             }
-            Err(McapError::UnexpectedEof) => {
+            Err(error) if is_cut(&error) => {
                 let problem =
                     "the file ends here, before its end; say --accept-cut to take what is there";
                 return Err(refuse(number, problem.to_owned()));
@@ -72,6 +88,10 @@ pub(crate) fn read(
             Err(error) => return Err(refuse(number, format!("{error}; copy the file again"))),
         };
         let Some(encoding) = encoding(&message.channel) else {
+            if is_fd(&message.channel) {
+                remains.skipped.fd += 1;
+                remains.skipped_at.get_or_insert(number);
+            }
             others.insert(name(&message.channel));
             continue;
         };
@@ -81,7 +101,12 @@ pub(crate) fn read(
                 let interface = message.channel.topic.as_str().into();
                 take(&Record { at, interface, frame, direction: None }, number);
             }
-            Ok(Seen::Other) => frames += 1,
+            Ok(kind @ (Seen::Remote | Seen::Error)) => {
+                frames += 1;
+                let skipped = &mut remains.skipped;
+                *(if kind == Seen::Error { &mut skipped.error } else { &mut skipped.remote }) += 1;
+                remains.skipped_at.get_or_insert(number);
+            }
             Err(problem) => remains.broken.get_or_insert((number, problem, 0)).2 += 1,
         }
     }
@@ -91,6 +116,20 @@ pub(crate) fn read(
         return Err(refuse(number, format!("no message of type can_msgs/msg/Frame; it has {has}")));
     }
     Ok(remains)
+}
+
+/// Whether the input ends too early, as its own reader or a decompressor below says it.
+fn is_cut(error: &McapError) -> bool {
+    match error {
+        McapError::UnexpectedEof => true,
+        McapError::Io(error) => error.kind() == ErrorKind::UnexpectedEof,
+        _ => false,
+    }
+}
+
+/// Whether a channel has CAN FD frames, which are of a type of their own.
+fn is_fd(topic: &Arc<Topic<'_>>) -> bool {
+    topic.schema.as_ref().is_some_and(|schema| schema.name == "ros2_socketcan_msgs/msg/FdFrame")
 }
 
 /// How a channel writes CAN frames; `None` where it is none of those.

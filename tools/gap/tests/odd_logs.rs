@@ -1,10 +1,12 @@
-//! Logs as loggers really write them: of several sources, out of order by a little.
+//! Logs as loggers really write them: of several sources, a little out of order, with frames that are
+//! padded, spoiled or of other kinds. What is left out is counted, and told where it is all there was.
 
 mod field;
 
-use field::{frames, line, log, read};
+use field::{DBC, POS_FRONT, decode, frames, line, log, read};
 use proptest::prelude::*;
-use xt28_gap::FaultKind;
+use xt28_gap::{Channel, FaultKind, FieldLog, GapError};
+use xt28_machine::Wheel;
 
 /// Lines in order of how late each was written: frame `i` by `late_us[i]`.
 fn written_late(late_us: &[u32]) -> String {
@@ -32,6 +34,100 @@ fn a_source_that_is_far_behind_is_put_in_order_and_said() {
     let [fault] = late.faults() else { panic!("{:?}", late.faults()) };
     assert!(matches!(fault.kind, FaultKind::OutOfOrder { by_s, .. } if by_s > 0.03), "{fault}");
     assert!(fault.to_string().contains("are put in order"), "{fault}");
+}
+
+/// The same database with the CRC of the arms' command, which the log's frames bear.
+fn protected() -> String {
+    let mode = " SG_ Mode : 48|4@1+ (1,0) [0|0] \"\" SMS\n";
+    let crc = format!("{mode} SG_ Crc : 56|8@1+ (1,0) [0|255] \"\" SMS\n");
+    let attribute = "BA_DEF_ BO_ \"E2eDataId\" INT 0 65535;\nBA_DEF_DEF_ \"E2eDataId\" 0;\n\
+                     BA_ \"E2eDataId\" BO_ 2365538343 16423;\n";
+    DBC.replacen(mode, &crc, 1) + attribute
+}
+
+fn read_protected(text: &str) -> Result<FieldLog, GapError> {
+    FieldLog::read(text.as_bytes(), "a.log", &decode(&protected()).unwrap(), false)
+}
+
+#[test]
+fn a_command_with_a_wrong_crc_is_left_out_and_counted() {
+    assert_eq!(read_protected(&log()).unwrap().faults(), []);
+    // Another stroke for one wheel under the CRC of the old one, from 0.2 s on.
+    let mut tick = -1;
+    let spoil = |line: &str| {
+        tick += i32::from(line.contains("0CFF4027"));
+        let bad = (20..23).contains(&tick);
+        (if bad { line.replace("4027#55", "4027#54") } else { line.to_owned() }) + "\n"
+    };
+    let text: String = log().lines().map(spoil).collect();
+    let log = read_protected(&text).unwrap();
+    let targets = log.series(Channel::TargetStroke(Wheel::Fr)).unwrap();
+    assert_eq!(targets.len(), 97);
+    assert!(targets.iter().all(|(_, stroke_m)| (stroke_m - 0.17).abs() < 1e-12));
+    let [fault] = log.faults() else { panic!("{:?}", log.faults()) };
+    assert_eq!(fault.line, 20 * 9 + 1);
+    let FaultKind::BadCrc { message, at_s, frames } = &fault.kind else { panic!("{fault}") };
+    assert_eq!((message.as_str(), *frames), ("ArmTarget", 3));
+    assert!((at_s - 0.2).abs() < 1e-9, "{at_s}");
+}
+
+#[test]
+fn a_frame_that_is_padded_is_read_and_said() {
+    let padded = read(&log().replace("18FE1026#2A002B00", "18FE1026#2A002B00FFFFFFFF")).unwrap();
+    assert_eq!(padded.all_series(), read(&log()).unwrap().all_series());
+    let [fault] = padded.faults() else { panic!("{:?}", padded.faults()) };
+    let wanted = "a.log:4: PosFront has 8 bytes where the DBC says 4; in 100 such frames the rest";
+    assert!(fault.to_string().starts_with(wanted), "{fault}");
+}
+
+/// Frames of other kinds, as candump writes them: error, remote, CAN FD.
+const OTHERS: [&str; 3] = ["20000004#0004000000000000", "123#R8", "18FE1026##12A002B00"];
+
+#[test]
+fn frames_of_other_kinds_are_counted() {
+    let mut lines: Vec<String> = log().lines().map(str::to_owned).collect();
+    for (at, i) in [(500, 0), (400, 1), (300, 2), (200, 0)] {
+        lines.insert(at, line(0, "can0", OTHERS[i]).trim_end().to_owned());
+    }
+    let log = read(&(lines.join("\n") + "\n")).unwrap();
+    let [fault] = log.faults() else { panic!("{:?}", log.faults()) };
+    assert_eq!(fault.line, 201);
+    assert_eq!(fault.kind, FaultKind::PassedOver { remote: 1, error: 2, fd: 1 });
+}
+
+#[test]
+fn a_log_without_a_needed_message_says_what_became_of_its_frames() {
+    let front = "18FE1026#2A002B00";
+    let bounded = DBC.replacen(
+        "SG_ FR : 0|16@1+ (1,0) [0|0] \"mm\" gateway\n SG_ FL",
+        "SG_ FR : 0|16@1+ (1,0) [0|9] \"mm\" gateway\n SG_ FL",
+        1,
+    );
+    assert!(bounded != DBC && DBC.contains(POS_FRONT));
+    let refused = |dbc: &str, text: &str| {
+        let decoder = decode(dbc).unwrap();
+        let error = FieldLog::read(text.as_bytes(), "a.log", &decoder, false).unwrap_err();
+        error.to_string()
+    };
+    for (dbc, text, wanted) in [
+        (DBC, log().replace(front, "18FE1026#2A00"), "a.log:4: PosFront has 2 bytes where"),
+        (&bounded, log(), "a.log:4: stroke.FR cannot be believed: 42 is outside 0 to 9"),
+        (&protected(), log().replace("4027#55", "4027#54"), "a.log:1: ArmTarget has a wrong CRC"),
+    ] {
+        let error = refused(dbc, &text);
+        assert!(error.starts_with(wanted) && error.contains("nothing is left of"), "{error}");
+    }
+    let error = refused(DBC, &log().replace(front, OTHERS[2]));
+    assert!(error.starts_with("a.log: no frame `PosFront` in the log"), "{error}");
+    assert!(error.ends_with("100 CAN FD frames; nothing is read from them"), "{error}");
+}
+
+#[test]
+fn a_log_of_other_kinds_of_frames_only_is_empty_and_says_of_what() {
+    assert_eq!(read("\n\n").unwrap_err().to_string(), "a.log: is empty: no CAN frame in it");
+    let error = read(&line(0, "can0", OTHERS[0])).unwrap_err().to_string();
+    assert!(error.starts_with("a.log: is empty: no CAN frame in it; a.log:1: from"), "{error}");
+    assert!(error.contains("1 error frames"), "{error}");
 }
 
 proptest! {

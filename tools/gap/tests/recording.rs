@@ -1,10 +1,11 @@
 //! MCAP recordings: the same log as candump's, whatever the chunks, and whatever happens to the file.
 
 use std::collections::BTreeMap;
-use std::io::Cursor;
+use std::io::{Cursor, Write as _};
 use std::path::Path;
 use std::sync::OnceLock;
 
+use flate2::write::GzEncoder;
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions};
 use proptest::prelude::*;
@@ -139,6 +140,38 @@ fn a_recording_is_known_by_its_content() {
     std::fs::write(&path, recording(ROS2, None)).unwrap();
     let log = FieldLog::load(&path, decoder(), false).unwrap();
     assert_eq!(log.all_series(), candump().all_series());
+}
+
+#[test]
+fn a_recording_may_be_packed_and_cut_within() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("drive.mcap.gz");
+    let mut gzip = GzEncoder::new(Vec::new(), flate2::Compression::none());
+    gzip.write_all(&recording(ROS2, None)).unwrap();
+    let bytes = gzip.finish().unwrap();
+    std::fs::write(&path, &bytes).unwrap();
+    let log = FieldLog::load(&path, decoder(), false).unwrap();
+    assert_eq!(log.all_series(), candump().all_series());
+    std::fs::write(&path, &bytes[..bytes.len() * 2 / 3]).unwrap();
+    let error = FieldLog::load(&path, decoder(), false).unwrap_err().to_string();
+    assert!(error.contains("say --accept-cut"), "{error}");
+    let log = FieldLog::load(&path, decoder(), true).unwrap();
+    assert!(matches!(log.faults().last().unwrap().kind, FaultKind::Cut), "{:?}", log.faults());
+}
+
+#[test]
+fn error_and_remote_frames_are_counted() {
+    for (flag, wanted) in [
+        (2, FaultKind::PassedOver { remote: 0, error: 1, fd: 0 }),
+        (0, FaultKind::PassedOver { remote: 1, error: 0, fd: 0 }),
+    ] {
+        let mut other = message(ROS2, 11_000, 4, &[0; 8]);
+        let flags = other.len() - 12;
+        other[flags + flag] = 1;
+        let log = read(&recording(ROS2, Some(&other)), false).unwrap();
+        let [fault] = log.faults() else { panic!("{:?}", log.faults()) };
+        assert_eq!((fault.line, &fault.kind), (902, &wanted));
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
 use crate::FaultKind;
-use crate::decoder::Tap;
+use crate::decoder::{Tap, Unread};
 
 /// A frame this many periods after the last of its kind came after a gap. Below two, so that one lost
 /// frame is seen; above one, so that jitter is not.
@@ -18,14 +18,20 @@ pub(super) struct Attendance {
     lost: u64,
     longest_s: f64,
     gap_line: u64,
-    wrong_length: Option<(u64, usize, u64)>,
+    short: Option<(u64, usize, u64)>,
+    long: Option<(u64, usize, u64)>,
+    spoiled: Option<(u64, f64, u64)>,
 }
 
 impl Attendance {
-    pub(super) fn note(&mut self, tap: &Tap, at: SimTime, line: u64, frame: &Frame) {
+    /// Notes a frame, which came `at`, `at_s` s after the first of the log.
+    pub(super) fn note(&mut self, tap: &Tap, at: SimTime, at_s: f64, line: u64, frame: &Frame) {
         let found = frame.data().len();
-        if found != tap.bytes() {
-            self.wrong_length.get_or_insert((line, found, 0)).2 += 1;
+        match tap.unread(frame) {
+            Some(Unread::Short) => self.short.get_or_insert((line, found, 0)).2 += 1,
+            Some(Unread::Crc) => self.spoiled.get_or_insert((line, at_s, 0)).2 += 1,
+            None if found > tap.bytes() => self.long.get_or_insert((line, found, 0)).2 += 1,
+            None => {}
         }
         if let (Some(last), Some(period)) = (self.last, tap.period()) {
             let away_s = (at - last).as_secs_f64();
@@ -52,10 +58,16 @@ impl Attendance {
             let (gaps, frames, longest_s) = (self.gaps, self.lost, self.longest_s);
             (self.gap_line, FaultKind::Dropped { message: message(), gaps, frames, longest_s })
         });
-        let length = self.wrong_length.map(|(line, found, frames)| {
-            let wanted = tap.bytes();
+        let wanted = tap.bytes();
+        let short = self.short.map(|(line, found, frames)| {
             (line, FaultKind::WrongLength { message: message(), found, wanted, frames })
         });
-        dropped.into_iter().chain(length)
+        let long = self.long.map(|(line, found, frames)| {
+            (line, FaultKind::Padded { message: message(), found, wanted, frames })
+        });
+        let spoiled = self.spoiled.map(|(line, at_s, frames)| {
+            (line, FaultKind::BadCrc { message: message(), at_s, frames })
+        });
+        [dropped, short, long, spoiled].into_iter().flatten()
     }
 }

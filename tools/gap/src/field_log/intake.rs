@@ -36,6 +36,8 @@ pub(super) struct Intake {
     ahead: Option<Stretch>,
     messages: BTreeMap<CanId, Attendance>,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
+    line: u64,
+    faults: Vec<(u64, FaultKind)>,
 }
 
 /// The longest of several spans of one kind, the line it is at, and how many there are.
@@ -58,6 +60,7 @@ impl Stretch {
 impl Intake {
     pub(super) fn take(&mut self, decoder: &Decoder, record: &Record, line: u64) {
         self.frames += 1;
+        self.line = line;
         match self.order.put(record.at, line, record.frame) {
             Place::Next => {}
             Place::Late(by) => Stretch::note(&mut self.late, line, by),
@@ -66,6 +69,16 @@ impl Intake {
         while let Some((at, line, frame)) = self.order.due() {
             self.hear(decoder, at, line, &frame);
         }
+    }
+
+    /// Takes a fault of the log itself, not of its frames.
+    pub(super) fn fault(&mut self, line: u64, kind: FaultKind) {
+        self.faults.push((line, kind));
+    }
+
+    /// Takes a fault of what comes behind the last frame.
+    pub(super) fn fault_at_end(&mut self, kind: FaultKind) {
+        self.fault(self.line, kind);
     }
 
     /// Takes the next frame in order of time.
@@ -83,8 +96,8 @@ impl Intake {
             return;
         };
         self.known_frames += 1;
-        self.messages.entry(frame.id()).or_default().note(tap, at, line, frame);
         let at_s = (at - first).as_secs_f64();
+        self.messages.entry(frame.id()).or_default().note(tap, at, at_s, line, frame);
         for (channel, value) in tap.values(frame) {
             match value {
                 Ok(value) => {
@@ -95,18 +108,9 @@ impl Intake {
         }
     }
 
-    /// What says that this is another bus's log: none of its frames is known.
-    fn stranger(&self, log: &str) -> GapError {
-        let ids: Vec<String> = self.strange.iter().map(ToString::to_string).collect();
-        GapError::Stranger { log: log.to_owned(), frames: self.frames, ids: ids.join(", ") }
-    }
-
-    pub(super) fn finish(
-        mut self,
-        name: Arc<str>,
-        decoder: &Decoder,
-        mut kinds: Vec<(u64, FaultKind)>,
-    ) -> Result<FieldLog, GapError> {
+    /// The log, whose name in errors is `name`.
+    pub(super) fn finish(mut self, name: &str, decoder: &Decoder) -> Result<FieldLog, GapError> {
+        let name: Arc<str> = name.into();
         while let Some((at, line, frame)) = self.order.rest() {
             self.hear(decoder, at, line, &frame);
         }
@@ -117,25 +121,14 @@ impl Intake {
             let by_s = -span.as_secs_f64();
             return Err(GapError::ClockSteps { log: name.to_string(), line, by_s });
         }
-        if self.known_frames == 0 && self.frames > 0 {
-            return Err(self.stranger(&name));
-        }
-        for channel in Channel::all() {
-            if channel.need() == Need::Required && !self.series.contains_key(&channel) {
-                return Err(GapError::Silent {
-                    log: name.to_string(),
-                    message: decoder.message_of(channel).unwrap_or_default().to_owned(),
-                    channel: channel.to_string(),
-                    known: self.known_frames,
-                    frames: self.frames,
-                });
-            }
-        }
-        kinds.extend(self.faults(decoder));
+        let mut kinds = std::mem::take(&mut self.faults);
+        kinds.extend(self.faults_of_frames(decoder));
         kinds.sort_by_key(|(line, _)| *line);
         let fault = |(line, kind)| LogFault { log: name.clone(), line, kind };
+        let faults: Vec<LogFault> = kinds.into_iter().map(fault).collect();
+        self.check(&name, decoder, &faults)?;
         Ok(FieldLog {
-            faults: kinds.into_iter().map(fault).collect(),
+            faults,
             series: self.series,
             frames: self.frames,
             duration_s: (self.latest - self.first.unwrap_or_default()).as_secs_f64(),
@@ -143,8 +136,34 @@ impl Intake {
         })
     }
 
+    /// Refuses a log that lacks what a replay needs, with the first fault that explains it.
+    fn check(&self, log: &str, decoder: &Decoder, faults: &[LogFault]) -> Result<(), GapError> {
+        let lost = faults.iter().find(|fault| fault.kind.leaves_out_any());
+        let why = lost.map(|fault| format!("; {fault}")).unwrap_or_default();
+        let log = log.to_owned();
+        if self.frames == 0 {
+            return Err(GapError::Empty { log, why });
+        }
+        if self.known_frames == 0 {
+            let ids: Vec<String> = self.strange.iter().map(ToString::to_string).collect();
+            let (frames, ids) = (self.frames, ids.join(", "));
+            return Err(GapError::Stranger { log, frames, ids, why });
+        }
+        let silent = |channel: &Channel| {
+            channel.need() == Need::Required && !self.series.contains_key(channel)
+        };
+        let Some(channel) = Channel::all().into_iter().find(silent) else { return Ok(()) };
+        let message = decoder.message_of(channel).unwrap_or_default().to_owned();
+        let channel = channel.to_string();
+        if let Some(fault) = faults.iter().find(|f| f.kind.leaves_out(&message, &channel)) {
+            return Err(GapError::AllLeftOut { fault: fault.to_string(), channel });
+        }
+        let (known, frames) = (self.known_frames, self.frames);
+        Err(GapError::Silent { log, message, channel, known, frames, why })
+    }
+
     /// What was wrong with the frames, each with its line.
-    fn faults(&self, decoder: &Decoder) -> Vec<(u64, FaultKind)> {
+    fn faults_of_frames(&self, decoder: &Decoder) -> Vec<(u64, FaultKind)> {
         let mut kinds = Vec::new();
         if let Some(Stretch { line, span, times: frames }) = self.late
             && span > LATE_TOLD

@@ -17,8 +17,10 @@ pub(super) enum Encoding {
 pub(super) enum Seen {
     /// A data frame with its instant: its stamp, or where that is zero, when it was recorded.
     Data(SimTime, Frame),
-    /// A remote or an error frame.
-    Other,
+    /// A remote frame.
+    Remote,
+    /// An error frame.
+    Error,
 }
 
 /// The frame in `bytes`, recorded at `recorded_ns`; else what is wrong with it.
@@ -32,8 +34,11 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding, recorded_ns: u64) -> Resu
     from.take(name_bytes)?;
     let id = from.word()?;
     let [remote, extended, error, len] = *from.take(4)? else { return Err(SHORT.to_owned()) };
-    if remote != 0 || error != 0 {
-        return Ok(Seen::Other);
+    if error != 0 {
+        return Ok(Seen::Error);
+    }
+    if remote != 0 {
+        return Ok(Seen::Remote);
     }
     let data = from.take(8)?;
     let data = data.get(..usize::from(len)).ok_or_else(|| format!("{len} data bytes, of 8"))?;

@@ -44,6 +44,9 @@ pub(crate) struct Where {
     /// there, else the ground is taken as level
     #[arg(long, value_name = "FILE")]
     about: Option<PathBuf>,
+    /// Take a log that ends in the middle of a line as ending before it
+    #[arg(long)]
+    accept_cut: bool,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
@@ -62,7 +65,7 @@ impl Where {
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let about = about(&self.logs, self.about.as_ref());
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
-        let set = RunSet::load(&self.logs, &decoder, known, false)?;
+        let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let machine_file = self.machine.as_deref();
         let given = Given { about: about.as_deref(), dbc: &self.dbc, machine: machine_file };
         for note in remarks(&set, &given)? {

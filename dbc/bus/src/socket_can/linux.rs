@@ -212,14 +212,15 @@ impl SocketCan {
 impl Bus for SocketCan {
     type Error = SocketError;
 
-    /// Hands the frame to the kernel, or keeps it in order where the kernel's queue is full.
+    /// Hands the frame to the kernel, or keeps it in order where the kernel's queue is full. While the
+    /// controller is known to be bus-off it is thrown away: the kernel would send it after the restart.
     fn send(&mut self, _: SimTime, frame: &Frame) -> Result<(), SocketError> {
-        self.flush()?;
-        if self.backlog.is_empty() && self.write(frame)? {
-            return Ok(());
-        }
         if self.state == BusState::BusOff {
             self.counters.discarded += 1;
+            return Ok(());
+        }
+        self.flush()?;
+        if self.backlog.is_empty() && self.write(frame)? {
             return Ok(());
         }
         if self.backlog.len() >= BACKLOG_FRAMES {
@@ -269,5 +270,51 @@ impl AsFd for SocketCan {
     /// For waiting on several things at once.
     fn as_fd(&self) -> BorrowedFd<'_> {
         self.socket.as_fd()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::fd::OwnedFd;
+    use std::os::unix::net::UnixDatagram;
+
+    use xt28_dbc::CanId;
+
+    use super::*;
+
+    /// A bus whose kernel is the other end of a pair of sockets.
+    fn bus() -> (SocketCan, UnixDatagram) {
+        let (ours, kernel) = UnixDatagram::pair().unwrap();
+        kernel.set_nonblocking(true).unwrap();
+        let bus = SocketCan {
+            socket: CanSocket::from(OwnedFd::from(ours)),
+            interface: "pair".to_owned(),
+            zero: SystemTime::UNIX_EPOCH,
+            backlog: VecDeque::new(),
+            state: BusState::ErrorActive,
+            counters: SocketCounters::default(),
+        };
+        (bus, kernel)
+    }
+
+    #[test]
+    fn nothing_reaches_the_kernel_while_the_controller_is_known_to_be_bus_off() {
+        let (mut bus, kernel) = bus();
+        let command = Frame::new(CanId::Standard(1), &[0xA5]).unwrap();
+        let frames_of_kernel = || {
+            let mut bytes = [0; 64];
+            core::iter::from_fn(|| kernel.recv(&mut bytes).ok()).count()
+        };
+        bus.send(SimTime::ZERO, &command).unwrap();
+        assert_eq!(frames_of_kernel(), 1);
+        bus.enter(BusState::BusOff);
+        for _ in 0..3 {
+            bus.send(SimTime::ZERO, &command).unwrap();
+        }
+        bus.enter(BusState::ErrorActive);
+        bus.flush().unwrap();
+        assert_eq!((frames_of_kernel(), bus.counters().discarded), (0, 3));
+        bus.send(SimTime::ZERO, &command).unwrap();
+        assert_eq!((frames_of_kernel(), bus.counters().sent), (1, 2));
     }
 }

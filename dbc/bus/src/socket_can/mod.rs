@@ -4,7 +4,7 @@
 //!
 //! The kernel's driver owns the controller. When it goes bus-off, [`SocketCan`] decodes the error
 //! frame, [`crate::Bus::state`] says [`crate::BusState::BusOff`], and everything not yet handed
-//! to the kernel is thrown away and counted: a command from before the fault must not move a
+//! to the kernel, or sent until it is back, is thrown away and counted: a command from before the fault must not move a
 //! machine after it. Restarting is a matter of configuration, not of this crate (it takes the
 //! right to administer the network):
 //!

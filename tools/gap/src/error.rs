@@ -54,7 +54,7 @@ pub enum GapError {
         channels: String,
     },
     /// A channel's signal cannot be read as the DBC has it.
-    #[error("{place}: {problem}; {channel} should come from there")]
+    #[error("{place}: {problem}; so {channel} cannot be read")]
     Layout {
         /// The DBC, with the line where one is known.
         place: String,
@@ -144,8 +144,8 @@ pub enum GapError {
         /// The channel.
         channel: String,
     },
-    /// The log holds no frame at all.
-    #[error("{log}: is empty: no CAN frame in it{why}")]
+    /// The log holds no frame that could be read.
+    #[error("{log}: is empty: no classic CAN data frame in it{why}")]
     Empty {
         /// The log.
         log: String,

@@ -180,10 +180,13 @@ impl fmt::Display for LogFault {
                 f,
                 "{message} has a wrong CRC, first at {at_s:.3} s; {frames} such frames are left out, so check E2eDataId in the DBC if those are all"
             ),
-            FaultKind::PassedOver { remote, error, fd } => write!(
-                f,
-                "from here on {error} error frames, {remote} remote frames and {fd} CAN FD frames; nothing is read from them"
-            ),
+            FaultKind::PassedOver { remote, error, fd } => {
+                let kinds = [(error, "error"), (remote, "remote"), (fd, "CAN FD")];
+                let there = kinds.iter().filter(|(frames, _)| **frames > 0);
+                let each: Vec<String> =
+                    there.map(|(n, kind)| format!("{n} {kind} frames")).collect();
+                write!(f, "from here on {}; nothing is read from them", each.join(", "))
+            }
             FaultKind::Unbelievable { channel, problem, values } => write!(
                 f,
                 "{channel} cannot be believed: {problem}; {values} such values are left out, so check the signal's range in the DBC"

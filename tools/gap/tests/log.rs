@@ -223,7 +223,10 @@ fn a_log_that_never_says_what_is_needed_is_refused() {
         log().lines().filter(|line| !line.contains("18FE202B")).map(|l| format!("{l}\n")).collect();
     let error = read(&text).unwrap_err().to_string();
     assert!(error.starts_with("a.log: no frame `Attitude` in the log"), "{error}");
-    assert_eq!(read("").unwrap_err().to_string(), "a.log: is empty: no CAN frame in it");
+    assert_eq!(
+        read("").unwrap_err().to_string(),
+        "a.log: is empty: no classic CAN data frame in it"
+    );
 }
 
 proptest! {

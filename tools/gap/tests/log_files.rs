@@ -59,7 +59,10 @@ fn a_log_that_is_cut_says_how_to_take_what_is_there() {
         assert!(error.contains(wanted) && error.contains("--accept-cut"), "{error}");
     }
     let error = load(&packed[..9], true).unwrap_err().to_string();
-    assert!(error.contains("is empty: no CAN frame in it; ") && error.contains("cut"), "{error}");
+    assert!(
+        error.contains("is empty: no classic CAN data frame in it; ") && error.contains("cut"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -48,7 +48,7 @@ fn a_signal_that_would_be_misread_is_refused_by_name() {
     ] {
         let error = refused(&odd(from, &to));
         assert!(error.contains(wanted), "{error}");
-        assert!(error.starts_with("field.dbc: ") && error.contains(" should come from"), "{error}");
+        assert!(error.starts_with("field.dbc: ") && error.contains("; so "), "{error}");
     }
 }
 

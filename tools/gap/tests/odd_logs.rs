@@ -124,10 +124,16 @@ fn a_log_without_a_needed_message_says_what_became_of_its_frames() {
 
 #[test]
 fn a_log_of_other_kinds_of_frames_only_is_empty_and_says_of_what() {
-    assert_eq!(read("\n\n").unwrap_err().to_string(), "a.log: is empty: no CAN frame in it");
+    assert_eq!(
+        read("\n\n").unwrap_err().to_string(),
+        "a.log: is empty: no classic CAN data frame in it"
+    );
     let error = read(&line(0, "can0", OTHERS[0])).unwrap_err().to_string();
-    assert!(error.starts_with("a.log: is empty: no CAN frame in it; a.log:1: from"), "{error}");
-    assert!(error.contains("1 error frames"), "{error}");
+    assert!(
+        error.starts_with("a.log: is empty: no classic CAN data frame in it; a.log:1: from"),
+        "{error}"
+    );
+    assert!(error.contains("from here on 1 error frames; nothing"), "{error}");
 }
 
 proptest! {

@@ -108,8 +108,15 @@ fn a_log_cut_in_the_middle_is_named_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let text = "(1.500000) can0 0CFF4027#5555555555551299\n(1.510000) can0 0CFF40";
     let log = file(&folder, "cut.log", text);
-    let talk = refusal(&["replay", &log, "--dbc", FIELD_DBC]);
-    assert!(talk.contains("cut.log:2: log is cut"), "{talk}");
+    for command in [&["replay"][..], &["gap", "where"], &["gap", "diagnose"]] {
+        let arguments = [command, &[&log, "--dbc", FIELD_DBC]].concat();
+        let talk = refusal(&arguments);
+        assert!(talk.contains("cut.log:2: log is cut"), "{talk}");
+        // The remedy that it names is one that the command knows.
+        assert!(talk.contains("--accept-cut"), "{talk}");
+        let talk = refusal(&[&arguments[..], &["--accept-cut"]].concat());
+        assert!(talk.contains("cut.log: no frame"), "{talk}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@
 //! which of the catalogue is it.
 
 mod allowed;
+mod beginning;
 mod causes;
 mod objection;
 mod places;
@@ -19,6 +20,7 @@ use super::inquiry::Inquiry;
 use super::knob::Knob;
 use super::verdict::{Diagnosis, ShareOf, Verdict};
 use super::wheel_order::axles_alike;
+use beginning::is_told;
 use causes::causes;
 use objection::Objection;
 use places::{places, unexplained};
@@ -78,7 +80,10 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let unknown = turned(findings.left_over(), UNKNOWN);
     let any = 1.0 - (1.0 - something) * (1.0 - unknown);
     let known = something * (1.0 - unknown);
-    let causes = causes(findings, known);
+    let mut causes = causes(findings, known);
+    for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
+        cause.begins = None;
+    }
     let runs: Vec<_> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
     let verdict = if any < 0.5 {
         Verdict::None

@@ -51,10 +51,10 @@ pub(super) fn joint_errors(
     let scrub = scrub_nm(signals, machine, effects, joint);
     let mut oil_rad = angle.first().copied().unwrap_or_default();
     // Within the play nothing is held: where the joint is then is the ground's matter, and a play that
-    // is wide enough would explain anything. So that time counts as an ordinary error, or as what it
-    // would without a play where that is less: a joint that nobody turns speaks for none and against none.
+    // is wide enough would explain anything. So that time counts as an ordinary error, also where it
+    // would be less without a play: counted as that, sound machines get one (docs/diagnosis.md, item 48).
     let excused = (half_play / EXCUSED_RAD).powi(2).min(1.0);
-    let (mut is_free, mut held) = (vec![false; signals.len], vec![0.0; signals.len]);
+    let mut is_free = vec![false; signals.len];
     let error: Samples = (0..signals.len)
         .map(|i| {
             let rate = steering.open(&mut state, openings[i], DT_S);
@@ -62,30 +62,20 @@ pub(super) fn joint_errors(
             let gap = oil_rad - angle[i];
             let twist = gap - gap.clamp(-half_play, half_play);
             is_free[i] = half_play > 0.0 && twist == 0.0;
+            if is_free[i] {
+                return 0.0;
+            }
             let taken_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i] + scrub[i];
-            held[i] = gap - taken_nm / stiffness_nm;
-            if is_free[i] { 0.0 } else { twist - taken_nm / stiffness_nm }
+            twist - taken_nm / stiffness_nm
         })
         .collect();
-    let mut errors = JointErrors::of(&error);
-    if is_free.contains(&true) {
-        let held = JointErrors::of(&held);
-        let ordinary = |k: usize, signal: Signal| excused * ORDINARY[k] * signal.floor().sigma;
-        let [slow, fast] = [ordinary(0, Signal::JointAngle), ordinary(1, Signal::JointFast)];
-        for i in (0..signals.len).filter(|&i| is_free[i]) {
-            errors.slow_rad[i] = slow.min(held.slow_rad[i].abs());
-            errors.fast_rad[i] = fast.min(held.fast_rad[i].abs());
-        }
+    let mut slow_rad = moving_mean(&error, SLOW_S);
+    let mut fast_rad: Samples = error.iter().zip(&slow_rad).map(|(all, slow)| all - slow).collect();
+    for i in (0..signals.len).filter(|&i| is_free[i]) {
+        slow_rad[i] = excused * ORDINARY[0] * Signal::JointAngle.floor().sigma;
+        fast_rad[i] = excused * ORDINARY[1] * Signal::JointFast.floor().sigma;
     }
-    errors
-}
-
-impl JointErrors {
-    fn of(error: &Samples) -> Self {
-        let slow_rad = moving_mean(error, SLOW_S);
-        let fast_rad = error.iter().zip(&slow_rad).map(|(all, slow)| all - slow).collect();
-        Self { slow_rad, fast_rad }
-    }
+    JointErrors { slow_rad, fast_rad }
 }
 
 /// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
-use xt28_sim::effects::{Effect, Parameter};
+use xt28_sim::effects::{Block, Effect, Parameter};
 
 use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left};
@@ -28,6 +28,8 @@ const BEGINNING_MIN: f64 = 6.0;
 /// How many standard deviations some parameter of an effect that sets in late is from where the effect
 /// is not there: an arm's oil begins anew with another law, and that alone may explain a jump.
 const BEGUN_SIGMA: f64 = 2.0;
+/// Tolerances that are next to nothing, and yet more than rounding.
+const BARELY: f64 = 2.0e-3;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
 /// The widest and the finest step in which a beginning is looked for, s.
@@ -203,11 +205,13 @@ impl<'a> Docket<'a> {
     /// What a fit is worth on both sets of runs. One that sets in late and then does nothing is looked at
     /// as if it had always been there.
     fn weighed(&self, fit: Fit) -> Candidate {
-        let fit =
+        let mut fit =
             if is_there(&fit) { fit } else { fit.hypothesis.refit(&self.fit, 0.0, &fit.values) };
-        let gain = |held| fit.hypothesis.gain(held, fit.from_s, &fit.values);
+        let gain = |held: &Evidence<'_>| fit.hypothesis.gain(held, fit.from_s, &fit.values);
         // Exactly nothing: not one residual is another with it.
-        let held_gain = self.held.as_ref().map(gain).filter(|gain| *gain != 0.0);
+        let held_gain = self.held.as_ref().map(|held| (gain(held), anew(held, &fit)));
+        let held_gain = held_gain.filter(|(gain, _)| *gain != 0.0).map(|(gain, anew)| gain - anew);
+        fit.log_evidence -= anew(&self.fit, &fit);
         Candidate { fit, held_gain, own_share: 1.0 }
     }
 
@@ -249,6 +253,20 @@ impl<'a> Docket<'a> {
         }
         fit
     }
+}
+
+/// What it explains that an arm's oil begins anew where an effect of it sets in late, nats: what next to
+/// nothing of the effect gains there. A jump of a pressure is gone with it, whatever the effect.
+fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
+    if fit.from_s == 0.0 || fit.hypothesis.effect.block != Block::Arms {
+        return 0.0;
+    }
+    let barely = |p: &Parameter| {
+        let by = BARELY * p.tolerance;
+        if p.neutral + by <= p.range[1] { p.neutral + by } else { p.neutral - by }
+    };
+    let values: Vec<f64> = fit.hypothesis.effect.parameters.iter().map(barely).collect();
+    fit.hypothesis.gain(evidence, fit.from_s, &values).max(0.0)
 }
 
 /// Whether an effect that sets in late is there at all from then on.

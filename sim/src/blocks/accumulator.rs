@@ -85,10 +85,38 @@ impl Accumulator {
         bears(left)
     }
 
-    /// Compression at which the force is the relief valve's, m.
+    /// Compression at which `share` of this force and a linear spring of `beside_n_m` make `force_n`,
+    /// which is positive, m.
+    ///
+    /// By Newton's rule in the length of the gas, of which force and compression are explicit: the force
+    /// is convex in it, so that from the second step on every step goes towards the root.
     #[must_use]
-    pub const fn top_m(&self) -> f64 {
-        self.top_m
+    pub(super) fn compression_m(&self, share: f64, beside_n_m: f64, force_n: f64) -> f64 {
+        let oil_n_m = share * OIL_STIFFNESS_N_M + beside_n_m;
+        if force_n <= oil_n_m * self.filling_m {
+            return force_n / oil_n_m;
+        }
+        let mut left = (self.precharge_n / (force_n + self.back_n)).powf(self.exponent.recip());
+        let mut compression_m = 0.0;
+        for _ in 0..STEPS {
+            let gas_n = self.precharge_n * left.powf(-self.exponent);
+            let gas_n_by_left = -self.exponent * gas_n / left;
+            compression_m = (gas_n - self.back_n) / OIL_STIFFNESS_N_M + self.gas_m * (1.0 - left);
+            let by_left = gas_n_by_left / OIL_STIFFNESS_N_M - self.gas_m;
+            let misfit_n = share * (gas_n - self.back_n) + beside_n_m * compression_m - force_n;
+            let next = left - misfit_n / (share * gas_n_by_left + beside_n_m * by_left);
+            let by = next.max(LEAST_LEFT) - left;
+            left += by;
+            if by.abs() < SOLVED {
+                break;
+            }
+        }
+        if compression_m <= self.top_m {
+            return compression_m;
+        }
+        let [top_n, top_n_m] = self.spring(self.top_m);
+        let short_n = force_n - share * top_n - beside_n_m * self.top_m;
+        self.top_m + short_n / (share * top_n_m + beside_n_m)
     }
 }
 
@@ -114,7 +142,7 @@ mod tests {
         };
         let precharged = (gas.precharge_pa + ATMOSPHERE_PA) * gas.volume_m3.powf(gas.exponent);
         for compression_m in [0.003, 0.01, 0.03, 0.06, 0.08] {
-            assert!(compression_m < accumulator.top_m());
+            assert!(compression_m < accumulator.top_m);
             assert!((constant(compression_m) / precharged - 1.0).abs() < 1e-9, "{compression_m}");
         }
     }
@@ -122,7 +150,7 @@ mod tests {
     #[test]
     fn force_is_continuous_and_the_slope_is_its_derivative() {
         let (_, _, accumulator) = accumulator();
-        for knee_m in [accumulator.filling_m, accumulator.top_m()] {
+        for knee_m in [accumulator.filling_m, accumulator.top_m] {
             let [below, above] = [-1e-12, 1e-12].map(|d| accumulator.spring(knee_m + d)[0]);
             assert!((above - below).abs() < 1e-3, "{knee_m}: {below} {above}");
         }

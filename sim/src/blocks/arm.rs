@@ -74,7 +74,7 @@ impl Arm {
 
     /// Lets the oil carry `load_n` in this motion; valve and seals stay as they are.
     pub(crate) fn refill(&self, state: &mut ArmState, load_n: f64, motion: &CylinderMotion) {
-        state.cylinder.rest_m = self.cylinder.carrying(load_n, motion).rest_m;
+        state.cylinder.rest_m = self.rest_m(load_n, motion);
     }
 
     /// First half of a step: moves the spool; gives the extending speed that it asks for, m/s.
@@ -91,11 +91,21 @@ impl Arm {
         speed_m_s: f64,
         dt_s: f64,
     ) -> CylinderForce {
-        let creep_m_s = self.leakage.speed_m_s(input.load_n, self.nominal_load_n)
-            + self.sag.speed_m_s(input.load_n, self.hanging_load_n);
-        let speed_m_s = speed_m_s + creep_m_s;
+        let speed_m_s = speed_m_s + self.creep_m_s(input.load_n);
         state.cylinder = self.cylinder.step(state.cylinder, &input.motion, speed_m_s, dt_s);
         self.cylinder.force(state.cylinder, &input.motion, dt_s)
+    }
+
+    /// As [`Self::fill`], of an arm whose load is measured, so that one sees its relief valve shut.
+    pub fn fill_shut(&self, state: &mut ArmState, input: &ArmInput, speed_m_s: f64, dt_s: f64) {
+        let speed_m_s = speed_m_s + self.creep_m_s(input.load_n);
+        state.cylinder = self.cylinder.step_shut(state.cylinder, &input.motion, speed_m_s, dt_s);
+    }
+
+    /// Speed at which oil finds another way than through the valve, extending > 0, m/s.
+    fn creep_m_s(&self, load_n: f64) -> f64 {
+        self.leakage.speed_m_s(load_n, self.nominal_load_n)
+            + self.sag.speed_m_s(load_n, self.hanging_load_n)
     }
 
     /// A whole step of an arm alone, which gets `flow_share` of the oil it asks for.
@@ -108,6 +118,12 @@ impl Arm {
     ) -> CylinderForce {
         let speed_m_s = self.open(state, input, dt_s);
         self.fill(state, input, flow_share * speed_m_s, dt_s)
+    }
+
+    /// Stroke at which the oil makes no force, m, where it carries `load_n` in this motion.
+    #[must_use]
+    pub fn rest_m(&self, load_n: f64, motion: &CylinderMotion) -> f64 {
+        self.cylinder.carrying(load_n, motion).rest_m
     }
 
     /// Force of the oil in this motion, N; positive under weight.

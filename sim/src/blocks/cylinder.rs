@@ -91,9 +91,22 @@ impl Cylinder {
         dt_s: f64,
     ) -> CylinderState {
         let [drawn_m, pushed_m] = self.lock.reach_m();
-        let rest_m = state.rest_m + speed_m_s * dt_s;
+        let next = self.step_shut(state, motion, speed_m_s, dt_s);
+        let rest_m = next.rest_m.clamp(motion.stroke_m + drawn_m, motion.stroke_m + pushed_m);
+        CylinderState { rest_m, ..next }
+    }
+
+    /// The same while the relief valve is known to be shut.
+    #[must_use]
+    pub fn step_shut(
+        &self,
+        state: CylinderState,
+        motion: &CylinderMotion,
+        speed_m_s: f64,
+        dt_s: f64,
+    ) -> CylinderState {
         CylinderState {
-            rest_m: rest_m.clamp(motion.stroke_m + drawn_m, motion.stroke_m + pushed_m),
+            rest_m: state.rest_m + speed_m_s * dt_s,
             friction_n: self.stiction.step(state.friction_n, motion.stroke_rate_m_s, dt_s),
         }
     }

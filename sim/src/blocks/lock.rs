@@ -23,12 +23,8 @@ impl Lock {
         let reach_m = machine.arms.force_max_n / stiffness_n_m;
         let mut lock = Self { stiffness_n_m, gas: None, reach_m: [-reach_m, reach_m] };
         if gas.share != 0.0 {
-            let accumulator = Accumulator::new(machine, gas);
-            lock.gas = Some((gas.share, accumulator));
-            let far_m = reach_m.max(accumulator.top_m());
-            lock.reach_m = [-far_m, far_m];
-            lock.reach_m =
-                [-1.0, 1.0].map(|sign| lock.compression_m(sign * machine.arms.force_max_n));
+            lock.gas = Some((gas.share, Accumulator::new(machine, gas)));
+            lock.reach_m[1] = lock.compression_m(machine.arms.force_max_n);
         }
         lock
     }
@@ -48,23 +44,15 @@ impl Lock {
         }
     }
 
-    /// Compression that makes `force_n`, m; no further than the relief valve allows.
+    /// Compression that makes `force_n`, m; the relief valve is not asked.
     #[must_use]
     pub fn compression_m(&self, force_n: f64) -> f64 {
-        if self.gas.is_none() {
-            return force_n / self.stiffness_n_m;
-        }
-        // The force grows with compression everywhere, so halving finds it to the last bit.
-        let [mut low_m, mut high_m] = self.reach_m;
-        for _ in 0..64 {
-            let middle_m = 0.5 * (low_m + high_m);
-            if self.spring(middle_m)[0] < force_n {
-                low_m = middle_m;
-            } else {
-                high_m = middle_m;
+        match &self.gas {
+            Some((share, accumulator)) if force_n > 0.0 => {
+                accumulator.compression_m(*share, (1.0 - share) * self.stiffness_n_m, force_n)
             }
+            _ => force_n / self.stiffness_n_m,
         }
-        0.5 * (low_m + high_m)
     }
 
     /// Compressions at which the relief valve opens, drawn and pushed, m.
@@ -91,7 +79,7 @@ mod tests {
             let lock = with_share(share);
             let [drawn_n, pushed_n] = lock.reach_m().map(|x| lock.spring(x)[0]);
             assert!((drawn_n + 270e3).abs() < 1e-3 && (pushed_n - 270e3).abs() < 1e-3);
-            for force_n in [-14e3, 0.0, 17e3, 55e3, 120e3] {
+            for force_n in [-300e3, -14e3, 0.0, 5e3, 17e3, 55e3, 120e3, 300e3] {
                 let [made_n, _] = lock.spring(lock.compression_m(force_n));
                 assert!((made_n - force_n).abs() < 1e-3, "{share}: {made_n}");
             }

@@ -113,6 +113,22 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
 }
 
 #[test]
+fn an_arm_that_is_almost_solid_is_not_off_by_less() {
+    let leak = Case::of(903, Cause::find("leakage-drift").unwrap(), Scope::One(Wheel::Fl));
+    let runs = signals(leak.only(Manoeuvre::ArmStep, 24.0));
+    let gas = hypothesis("accumulator-gas", effects::Scope::Wheel(Wheel::Fl));
+    let solid = gas.applied(&Effects::default(), &[1.0, 0.5e6, 0.1e-3, 1.0]);
+    let [lock_m, solid_m] = [Effects::default(), solid].map(|effects| {
+        let generator = Generator::ArmStroke(Wheel::Fl);
+        let residuals = generator.residuals(&runs[0], &Machine::xt28(), &effects);
+        let told: Vec<f64> =
+            residuals[0].values.iter().copied().filter(|m| m.is_finite()).collect();
+        (told.iter().map(|m| m * m).sum::<f64>() / told.len() as f64).sqrt()
+    });
+    assert!(lock_m > 4e-3 && solid_m > 0.8 * lock_m, "{lock_m} {solid_m}");
+}
+
+#[test]
 fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let case = Case::draw(3_331_623_976, Kind::Pair);
     let runs = signals(case.only(Manoeuvre::ArmStep, 32.0));

@@ -14,6 +14,9 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 /// a tenth of a millimetre a second stands out over a run, short enough that what a law has wrong by a
 /// few per cent does not add up to more than the fault itself.
 const FORGET_S: f64 = 2.0;
+/// Share of the relief valve's force below which a load that was measured has not opened it. Were the
+/// prediction allowed to open it, an arm that is almost solid would be off by nothing.
+const SHUT: f64 = 0.9;
 /// Share of a tolerance below which a parameter is where it was.
 const ROUNDING: f64 = 1e-3;
 
@@ -29,6 +32,7 @@ pub(super) struct ArmDrive<'a> {
     anew: [Option<usize>; 2],
     loads: Loads,
     area_bore_m2: f64,
+    force_max_n: f64,
 }
 
 impl<'a> ArmDrive<'a> {
@@ -50,6 +54,7 @@ impl<'a> ArmDrive<'a> {
             anew: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
             area_bore_m2: machine.arms.area_bore_m2,
+            force_max_n: machine.arms.force_max_n,
         }
     }
 
@@ -96,7 +101,7 @@ impl<'a> ArmDrive<'a> {
         let is_new = &self.signals.load_is_new[self.wheel];
         let mut state = self.started();
         let mut seen_n = self.loads.reading_n[0];
-        let mut error_m = 0.0;
+        let (mut error_m, mut m_n) = (0.0, 0.0);
         let step = |i: usize| {
             let (input, s) = (self.input(i), self.sensors(i));
             if self.anew.contains(&Some(i)) {
@@ -104,30 +109,39 @@ impl<'a> ArmDrive<'a> {
                 seen_n = self.loads.reading_n[i];
             }
             let made_n = self.arm.oil_force_n(&state, &input.motion);
-            let stiffness_n_m = self.stiffness_n_m(&state, &input.motion, made_n);
             seen_n = KEPT * seen_n + (1.0 - KEPT) * self.read(i, made_n);
-            let m_n = s.stroke_scale.factor / (stiffness_n_m * s.pressure_scale.factor);
             if self.loads.is_drained.get(i) == Some(&true) {
                 // What came in past the valve is not in the opening: begin anew.
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
                 (seen_n, error_m) = (self.loads.reading_n[i], f64::NAN);
             } else if is_new[i] {
+                m_n = s.stroke_scale.factor * self.give_m_n(i, seen_n, &input.motion);
                 error_m = m_n * (seen_n - self.loads.reading_n[i]);
             }
-            state.cylinder.rest_m -= (made_n - input.load_n) / stiffness_n_m * (DT_S / FORGET_S);
+            let parted_m = state.cylinder.rest_m - self.arm.rest_m(input.load_n, &input.motion);
+            state.cylinder.rest_m -= parted_m * (DT_S / FORGET_S);
             let asked_m_s = self.arm.open(&mut state, &input, DT_S);
             let given_m_s = share.get(i).map_or(asked_m_s, |share| share * asked_m_s);
-            self.arm.fill(&mut state, &input, given_m_s, DT_S);
+            if input.load_n.abs() < SHUT * self.force_max_n {
+                self.arm.fill_shut(&mut state, &input, given_m_s, DT_S);
+            } else {
+                self.arm.fill(&mut state, &input, given_m_s, DT_S);
+            }
             (error_m, m_n)
         };
         (0..self.signals.len).map(step).unzip()
     }
 
-    /// Of the oil that makes `made_n` in this motion; the end stops are not among it.
-    fn stiffness_n_m(&self, state: &ArmState, motion: &CylinderMotion, made_n: f64) -> f64 {
-        const BY_M: f64 = 1.0e-4;
-        let further = CylinderMotion { stroke_m: motion.stroke_m - BY_M, ..*motion };
-        (self.arm.oil_force_n(state, &further) - made_n) / BY_M
+    /// How far the arm gives way for a newton, on average between the load read at sample `i` and one
+    /// that would be read as `seen_n`, m/N. Between them, not about one: gas that would be pressed far
+    /// beyond its load is so stiff there that it would seem to be a hair's breadth off.
+    fn give_m_n(&self, i: usize, seen_n: f64, motion: &CylinderMotion) -> f64 {
+        const LEAST_N: f64 = 1.0;
+        let read_n = self.loads.reading_n[i];
+        let by_n = if (seen_n - read_n).abs() < LEAST_N { LEAST_N } else { seen_n - read_n };
+        let [from_m, to_m] =
+            [read_n, read_n + by_n].map(|n| self.arm.rest_m(self.load_n(i, n), motion));
+        (to_m - from_m) / by_n
     }
 
     fn started(&self) -> ArmState {
@@ -135,7 +149,7 @@ impl<'a> ArmDrive<'a> {
     }
 
     fn input(&self, i: usize) -> ArmInput {
-        let (s, stroke) = (self.sensors(i), &self.signals.stroke_m[self.wheel]);
+        let stroke = &self.signals.stroke_m[self.wheel];
         let truth = |i: usize| {
             let s = self.sensors(i);
             (stroke[i] - s.stroke_bias.bias_m) / s.stroke_scale.factor
@@ -143,12 +157,17 @@ impl<'a> ArmDrive<'a> {
         let (now_m, before_m) = (truth(i), truth(i.saturating_sub(1)));
         // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
         let stroke_rate_m_s = (now_m - before_m) / DT_S;
-        let offset_n = s.pressure_bias.bias_pa * self.area_bore_m2;
         ArmInput {
             command: self.signals.opening[self.wheel][i],
-            load_n: (self.loads.oil_n[i] - offset_n) / s.pressure_scale.factor,
+            load_n: self.load_n(i, self.loads.oil_n[i]),
             motion: CylinderMotion { stroke_m: now_m, stroke_rate_m_s },
         }
+    }
+
+    /// Load that the sensors show as `reading_n` at sample `i`.
+    fn load_n(&self, i: usize, reading_n: f64) -> f64 {
+        let s = self.sensors(i);
+        (reading_n - s.pressure_bias.bias_pa * self.area_bore_m2) / s.pressure_scale.factor
     }
 
     /// Load that the sensors show at sample `i` for one of `load_n`.

@@ -50,7 +50,7 @@ pub use search::search;
 pub(crate) use signals::needed;
 pub use signals::{DT_S, Samples, Signals};
 pub use verdict::{
-    Beginning, Cause, Diagnosis, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Together,
-    Unexplained, Verdict,
+    Beginning, Cause, Diagnosis, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,
+    Together, Verdict,
 };
 pub use wheel_order::{Swap, swapped_wheels};

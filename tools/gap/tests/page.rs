@@ -7,7 +7,7 @@ use std::path::Path;
 use made_up::{signals, swinging};
 use xt28_gap::diagnosis::{
     Cause, Details, Diagnosis, Estimate, FieldRun, Inquiry, Next, NotTestable, Place, ShareOf,
-    Shrink, Together, Unexplained, Verdict,
+    Shrink, Spot, Together, Verdict,
 };
 use xt28_gap::page::{Subject, headline, html, text};
 use xt28_gap::{Decoder, FieldLog, Mapping};
@@ -62,10 +62,12 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
         shrink: Some(shrink()),
     };
     let place = |block, scope: &str, gap_over_noise| Place {
-        block,
-        part: "stance",
-        scope: scope.parse().unwrap(),
-        residual: HOSTILE.to_owned(),
+        spot: Spot {
+            block,
+            part: "stance",
+            scope: scope.parse().unwrap(),
+            residual: HOSTILE.to_owned(),
+        },
         gap_over_noise,
         share: 0.5,
     };
@@ -219,7 +221,7 @@ fn a_shrink_on_fitted_runs_is_not_said_to_be_on_others() {
 #[test]
 fn arms_that_all_part_colour_every_wheel() {
     let mut all = diagnosis(Verdict::Unknown);
-    all.places.iter_mut().for_each(|place| place.scope = "all".parse().unwrap());
+    all.places.iter_mut().for_each(|place| place.spot.scope = "all".parse().unwrap());
     all.places[0].gap_over_noise = 200.0;
     let page = page_of(&all);
     let darkest = page.matches("#7f0000").count();
@@ -256,7 +258,7 @@ fn the_likeliest_wheels_are_foremost_whichever_fit_best() {
 fn what_is_unknown_is_sought_where_the_objection_is() {
     let mut unknown = diagnosis(Verdict::Unknown);
     unknown.causes.clear();
-    unknown.unexplained = Some(Unexplained {
+    unknown.unexplained = Some(Spot {
         block: Block::Payload,
         part: "stance",
         scope: "all".parse().unwrap(),

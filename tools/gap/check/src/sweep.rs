@@ -9,7 +9,7 @@ use rand::seq::IndexedRandom;
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
-use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Place, Verdict};
+use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Spot, Verdict};
 use xt28_gap_plants::{Case, Cause as Fault, Scope as Wheels, Scopes};
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::{CATALOGUE, Effect, Scope};
@@ -108,8 +108,8 @@ fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
     };
     let is_nothing = |said: &Diagnosis| said.verdict == Verdict::None;
     let is_shown = !(is_nothing(&blind) && full.as_ref().is_some_and(is_nothing));
-    let place = blind.places.first();
-    let shows = |place: &Place| effects.iter().any(|&(effect, on)| shows_at(effect, on, place));
+    let place = blind.places.first().map(|place| &place.spot);
+    let shows = |place: &Spot| effects.iter().any(|&(effect, on)| shows_at(effect, on, place));
     Ok(Withheld {
         case: machine.name(),
         truth: effects.iter().map(|(effect, on)| format!("{} {on}", effect.name)).collect(),
@@ -132,7 +132,7 @@ fn alike(whole: &Diagnosis, effect: &Effect, named: &Cause) -> bool {
 }
 
 /// Whether `effect` on these wheels shows at `place`.
-fn shows_at(effect: &Effect, on: Scope, place: &Place) -> bool {
+fn shows_at(effect: &Effect, on: Scope, place: &Spot) -> bool {
     let hears = |generator: &Generator| generator.hears(effect, on);
     let mut blocks = Generator::all().into_iter().filter(hears).map(Generator::block);
     blocks.any(|block| block == place.block) && meet(place.scope, on)

@@ -239,7 +239,7 @@ mod tests {
             ..Findings::default()
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
-        assert_eq!(diagnosis.places[0].part, "arm");
+        assert_eq!(diagnosis.places[0].spot.part, "arm");
         let spot = diagnosis.unexplained.expect("a signal speaks against it");
         assert_eq!((spot.part, spot.residual.as_str()), ("stance", "roll"));
     }
@@ -260,7 +260,7 @@ mod tests {
             ..Findings::default()
         };
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
-        let block = |left_over| judge(&inquiry, &findings(left_over)).places[0].block;
+        let block = |left_over| judge(&inquiry, &findings(left_over)).places[0].spot.block;
         assert_eq!([block(1.0), block(250.0)], [Block::Arms, Block::Steering]);
     }
 

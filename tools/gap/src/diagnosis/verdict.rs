@@ -15,7 +15,7 @@ pub struct Diagnosis {
     pub share_of: ShareOf,
     /// The signal that the best of the catalogue leaves open, where something unknown is the matter.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub unexplained: Option<Unexplained>,
+    pub unexplained: Option<Spot>,
     /// Causes, the likeliest first. Those with a probability above one half are stood by.
     #[serde(serialize_with = "as_told")]
     pub causes: Vec<Cause>,
@@ -63,24 +63,9 @@ pub enum ShareOf {
     Machine,
 }
 
-/// A signal that speaks against whatever the catalogue has.
+/// A signal of a block, and the wheels that it is of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Unexplained {
-    /// The block.
-    #[serde(serialize_with = "as_text")]
-    pub block: Block,
-    /// Who watches it, as in a place.
-    pub part: &'static str,
-    /// Its wheels.
-    #[serde(serialize_with = "as_text")]
-    pub scope: Scope,
-    /// The signal.
-    pub residual: String,
-}
-
-/// One block on measured inputs.
-#[derive(Clone, Debug, Serialize)]
-pub struct Place {
+pub struct Spot {
     /// The block.
     #[serde(serialize_with = "as_text")]
     pub block: Block,
@@ -91,30 +76,26 @@ pub struct Place {
     pub scope: Scope,
     /// The signal that is compared.
     pub residual: String,
+}
+
+impl Spot {
+    /// Whether its wheels say anything: a joint and the engine have none.
+    #[must_use]
+    pub fn has_wheels(&self) -> bool {
+        self.block == Block::Arms || self.scope != Scope::All
+    }
+}
+
+/// One block on measured inputs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Place {
+    /// What is compared there.
+    #[serde(flatten)]
+    pub spot: Spot,
     /// Root mean square of what ordinary tolerances leave, in units of the noise floor.
     pub gap_over_noise: f64,
     /// Share that it carries of what [`Diagnosis::share_of`] says, 0 to 1.
     pub share: f64,
-}
-
-impl Place {
-    /// Whether its wheels say anything: a joint and the engine have none.
-    #[must_use]
-    pub fn has_wheels(&self) -> bool {
-        has_wheels(self.block, self.scope)
-    }
-}
-
-impl Unexplained {
-    /// The same of it.
-    #[must_use]
-    pub fn has_wheels(&self) -> bool {
-        has_wheels(self.block, self.scope)
-    }
-}
-
-fn has_wheels(block: Block, scope: Scope) -> bool {
-    block == Block::Arms || scope != Scope::All
 }
 
 /// One cause at one scope.

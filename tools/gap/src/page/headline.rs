@@ -74,13 +74,10 @@ fn unknown(diagnosis: &Diagnosis, perhaps: bool) -> String {
 /// The signal that nothing known explains: the one that speaks against the best of the catalogue, else
 /// the one that parts most.
 pub(super) fn spot(diagnosis: &Diagnosis) -> Option<String> {
-    let (has_wheels, scope, residual) = match (&diagnosis.unexplained, diagnosis.places.first()) {
-        (Some(one), _) => (one.has_wheels(), one.scope, &one.residual),
-        (None, Some(place)) => (place.has_wheels(), place.scope, &place.residual),
-        (None, None) => return None,
-    };
-    let wheels = if has_wheels { format!(" ({})", on(scope)) } else { String::new() };
-    Some(format!("{residual}{wheels}"))
+    let largest = diagnosis.places.first().map(|place| &place.spot);
+    let spot = diagnosis.unexplained.as_ref().or(largest)?;
+    let wheels = if spot.has_wheels() { format!(" ({})", on(spot.scope)) } else { String::new() };
+    Some(format!("{}{wheels}", spot.residual))
 }
 
 /// Something is wrong, and nothing is likelier than not.

@@ -5,7 +5,7 @@ use xt28_sim::effects::{Block, Scope};
 
 use super::colour::{BLANK, INK, legend, of_gap};
 use super::svg::{Anchor, Svg};
-use crate::diagnosis::{Diagnosis, Place};
+use crate::diagnosis::{Diagnosis, Spot};
 
 const SIZE: [f64; 2] = [360.0, 405.0];
 const PX_PER_M: f64 = 40.0;
@@ -95,15 +95,14 @@ fn key(svg: &mut Svg) {
 
 impl Parts {
     fn new(diagnosis: &Diagnosis) -> Self {
-        let worst = |of: &dyn Fn(&&Place) -> bool| {
-            let gaps = diagnosis.places.iter().filter(of).map(|place| place.gap_over_noise);
+        let worst = |of: &dyn Fn(&Spot) -> bool| {
+            let there = diagnosis.places.iter().filter(|place| of(&place.spot));
+            let gaps = there.map(|place| place.gap_over_noise);
             gaps.fold(None, |most: Option<f64>, gap| Some(most.map_or(gap, |most| most.max(gap))))
         };
-        let whole = |block: Block| worst(&|p: &&Place| p.block == block && p.scope == Scope::All);
+        let whole = |block: Block| worst(&|s: &Spot| s.block == block && s.scope == Scope::All);
         Self {
-            wheels: PerWheel::from_fn(|w| {
-                worst(&|p: &&Place| p.has_wheels() && p.scope.contains(w))
-            }),
+            wheels: PerWheel::from_fn(|w| worst(&|s: &Spot| s.has_wheels() && s.scope.contains(w))),
             joints: whole(Block::Steering),
             drive: whole(Block::Drive),
             frames: [Block::Payload, Block::Ground, Block::Tyre]

@@ -77,9 +77,9 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         let _ = writeln!(
             out,
             "{:<19} {:<6} {:<37} {:>14} {:>10}",
-            place.part,
-            place.scope,
-            place.residual,
+            place.spot.part,
+            place.spot.scope,
+            place.spot.residual,
             short(place.gap_over_noise),
             percent(place.share)
         );

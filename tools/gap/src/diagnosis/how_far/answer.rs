@@ -50,7 +50,7 @@ impl HowFar {
     fn share_out(&self, places: &mut [Place]) {
         let shares = self.shares();
         for (block, share) in shares {
-            let of_block = |place: &Place| carrier(place.block) == block;
+            let of_block = |place: &Place| carrier(place.spot.block) == block;
             let total: f64 = places.iter().filter(|p| of_block(p)).map(|p| p.gap_over_noise).sum();
             for place in places.iter_mut().filter(|p| of_block(p)) {
                 place.share = if total > 0.0 { share * place.gap_over_noise / total } else { 0.0 };

@@ -8,7 +8,7 @@ use xt28_sim::effects::Scope;
 use crate::diagnosis::evidence::Left;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::Generator;
-use crate::diagnosis::verdict::{Place, Unexplained};
+use crate::diagnosis::verdict::{Place, Spot};
 
 /// A wheel with more than this share of the worst wheel's gap parts as it does.
 const ALIKE: f64 = 0.4;
@@ -27,10 +27,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
     let mut place = |scope: Scope, of: &[&Parting]| {
         let Some(Parting { left, .. }) = of.first() else { return };
         let place = Place {
-            block: left.generator.block(),
-            part: left.generator.part(),
-            scope,
-            residual: residual(left.generator, left.signal),
+            spot: spot((left.generator, left.signal), scope),
             gap_over_noise: of.iter().map(|p| p.left.square.sqrt()).fold(0.0, f64::max),
             share: of.iter().map(|parting| parting.excess).sum::<f64>() / total,
         };
@@ -97,20 +94,21 @@ fn wheel(generator: Generator, signal: Signal) -> Option<Wheel> {
     }
 }
 
-/// One signal of one generator, as `places` name it, with the wheels that part as its own does.
-pub(super) fn unexplained(
-    (generator, signal): (Generator, Signal),
-    places: &[Place],
-) -> Unexplained {
-    let (part, residual) = (generator.part(), residual(generator, signal));
-    let own = wheel(generator, signal);
-    let alike = places.iter().find(|place| {
-        let is_there = own.is_none_or(|wheel| place.scope.contains(wheel));
-        place.part == part && place.residual == residual && is_there
+/// One signal of one generator at wheels that were chosen.
+fn spot((generator, signal): (Generator, Signal), scope: Scope) -> Spot {
+    let residual = residual(generator, signal);
+    Spot { block: generator.block(), part: generator.part(), scope, residual }
+}
+
+/// One signal of one generator, with the wheels that part as its own does where `places` name it.
+pub(super) fn unexplained(at: (Generator, Signal), places: &[Place]) -> Spot {
+    let own = wheel(at.0, at.1);
+    let alone = spot(at, own.map_or(Scope::All, Scope::Wheel));
+    let alike = places.iter().map(|place| &place.spot).find(|spot| {
+        let is_there = own.is_none_or(|wheel| spot.scope.contains(wheel));
+        spot.part == alone.part && spot.residual == alone.residual && is_there
     });
-    let alone = || own.map_or(Scope::All, Scope::Wheel);
-    let scope = alike.map_or_else(alone, |place| place.scope);
-    Unexplained { block: generator.block(), part, scope, residual }
+    Spot { scope: alike.map_or(alone.scope, |spot| spot.scope), ..alone }
 }
 
 /// The scope whose wheels are those that part alike, and the wheels beside it; wheel by wheel where
@@ -153,7 +151,7 @@ mod tests {
         let square = |wheel: Wheel| if wheel.axle() == Axle::Front { 100.0 } else { 1.0 };
         let before: Vec<Left> = Wheel::ALL.into_iter().map(|w| left(w, square(w))).collect();
         let places = places(&before, &before);
-        assert_eq!(places[0].scope, Scope::Axle(Axle::Front));
+        assert_eq!(places[0].spot.scope, Scope::Axle(Axle::Front));
         assert!((places[0].gap_over_noise - 10.0).abs() < 1e-12);
         assert!((places[0].share - 1.0).abs() < 1e-12);
         assert_eq!(places.len(), 5);
@@ -182,8 +180,11 @@ mod tests {
         let signal = Signal::Contact(Wheel::Ml);
         let both = [of(Generator::Stance, signal), of(Generator::Joint(1), Signal::JointAngle)];
         let [one, other] = &places(&both, &both)[..] else { panic!("two places") };
-        assert_eq!((one.scope, one.residual.as_str()), (Scope::All, "touch of the ground, ML"));
-        assert_eq!(other.residual, "rear joint angle");
+        assert_eq!(
+            (one.spot.scope, one.spot.residual.as_str()),
+            (Scope::All, "touch of the ground, ML")
+        );
+        assert_eq!(other.spot.residual, "rear joint angle");
     }
 
     #[test]
@@ -198,7 +199,7 @@ mod tests {
         let arm = |floors| of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, floors, 150.0);
         let weight = |floors| of(Generator::Stance, Signal::Weight, floors, 17.0);
         let places = places(&[arm(2.2), weight(60.0)], &[arm(1.0), weight(2.0)]);
-        assert_eq!(places[0].block, Block::Payload);
+        assert_eq!(places[0].spot.block, Block::Payload);
     }
 
     #[test]
@@ -218,6 +219,6 @@ mod tests {
             samples: 100.0,
         };
         let places = places(&[roll(1.4), joint(1.2)], &[roll(1.4), joint(0.2)]);
-        assert_eq!(places[0].block, Block::Steering);
+        assert_eq!(places[0].spot.block, Block::Steering);
     }
 }

@@ -112,12 +112,14 @@ impl Drive {
     #[must_use]
     pub fn resumed(&self, input: &DriveInput, torque_nm: &PerWheel<f64>, dt_s: f64) -> DriveState {
         let delay_s = self.effects.throttle_delay.delay_s;
+        let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
+        let share = self.effects.engine_droop.speed_share(power_w);
+        let input = &DriveInput { engine_speed_rpm: input.engine_speed_rpm * share, ..*input };
         let targets = [0, 1].map(|c| self.target_rad_s(c, input));
         let held_nm = [0, 1].map(|c| {
             let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
             circuit_nm - self.circuit_gain_nms * (targets[c] - self.mean_rad_s(c, input))
         });
-        let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
         DriveState {
             asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
             target_rad_s: targets.map(Lag::new),
@@ -372,6 +374,9 @@ mod tests {
         let wanted_rpm = 1200.0 * (1.0 - 5.0e-6 * out.power_w);
         assert!(out.power_w > 5_000.0);
         assert!((out.engine_speed_rpm - wanted_rpm).abs() < 0.5, "{}", out.engine_speed_rpm);
+        let mut resumed = drive.resumed(&input(1.0, 0.3), &out.wheel_torque_nm, DT_S);
+        let next = drive.step(&mut resumed, &input(1.0, 0.3), DT_S);
+        assert!((next.wheel_torque_nm.sum() / out.wheel_torque_nm.sum() - 1.0).abs() < 1e-6);
     }
 
     #[test]

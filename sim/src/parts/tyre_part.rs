@@ -37,10 +37,9 @@ impl TyrePart {
     pub(super) fn new(machine: &Machine, effects: &WheelEffects) -> Self {
         let v = &machine.vehicle;
         let (soft, slippery) = (&effects.soft_tyre, &effects.slippery_ground);
-        let softened = *soft != SoftTyre::default();
-        let nominal =
-            SoftTyre { stiffness_n_m: v.tyre_stiffness_n_m, damping_n_s_m: v.tyre_damping_n_s_m };
-        let SoftTyre { stiffness_n_m, damping_n_s_m } = if softened { *soft } else { nominal };
+        // Each number by itself: who says how stiff a tyre is has not said how it is damped.
+        let neutral = SoftTyre::default();
+        let or = |said: f64, neutral: f64, own: f64| if said == neutral { own } else { said };
         let brush = match v.tyre_model {
             TyreModel::Rigid => None,
             TyreModel::Brush => Some(Brush {
@@ -50,11 +49,32 @@ impl TyrePart {
             }),
         };
         Self {
-            stiffness_n_m,
-            damping_n_s_m,
+            stiffness_n_m: or(soft.stiffness_n_m, neutral.stiffness_n_m, v.tyre_stiffness_n_m),
+            damping_n_s_m: or(soft.damping_n_s_m, neutral.damping_n_s_m, v.tyre_damping_n_s_m),
             friction: machine.wheels.friction * slippery.friction_factor,
             slip: slippery.slip,
             brush,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_effect_does_not_say_is_the_machine_files() {
+        let mut machine = Machine::xt28();
+        (machine.vehicle.tyre_stiffness_n_m, machine.vehicle.tyre_damping_n_s_m) = (6.0e5, 9.0e3);
+        let mut effects = WheelEffects::default();
+        let numbers = |effects: &WheelEffects| {
+            let tyre = TyrePart::new(&machine, effects);
+            [tyre.stiffness_n_m, tyre.damping_n_s_m]
+        };
+        assert_eq!(numbers(&effects), [6.0e5, 9.0e3]);
+        effects.soft_tyre.stiffness_n_m = 4.0e5;
+        assert_eq!(numbers(&effects), [4.0e5, 9.0e3]);
+        effects.soft_tyre.damping_n_s_m = 5.0e3;
+        assert_eq!(numbers(&effects), [4.0e5, 5.0e3]);
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
-/// Spring and damper of one tyre. At the default the machine file's own tyre counts.
+/// Spring and damper of one tyre. A number at its default is the machine file's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftTyre {
     /// Stiffness, N/m.

@@ -1,4 +1,5 @@
-//! Independent environments on more and more threads: steps a second, and the efficiency of it.
+//! Independent environments on more and more threads: steps a second, and the efficiency of it; each
+//! thread with environments of its own, then all of them as a fleet, as a trainer steps them.
 //!
 //! Steps a second are by the clock on the wall, so they mean something on an idle machine only. The
 //! processor's time for a step and how often a thread gave the processor up of its own accord are
@@ -13,9 +14,12 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rayon::ThreadPoolBuilder;
 use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Actuation, Bodies, Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Fleet, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle,
+};
 
 /// Steps per second of simulated time.
 const RATE_HZ: u32 = 120;
@@ -23,6 +27,8 @@ const RATE_HZ: u32 = 120;
 const ENVIRONMENTS: usize = 4;
 /// Steps of each environment that are timed.
 const STEPS: usize = 1200;
+/// Steps that a fleet makes a call: a policy is asked twenty times a second.
+const STEPS_A_CALL: u32 = RATE_HZ / 20;
 /// Times each number of threads is measured; the quickest counts, for others use the machine too.
 const REPEATS: usize = 5;
 
@@ -33,22 +39,26 @@ fn main() -> Result<(), String> {
     println!(
         "\n{ENVIRONMENTS} environments a thread at {RATE_HZ} Hz on rough ground, {cores} cores\n"
     );
-    println!("| engine | threads | steps/s | efficiency | processor us/step | waits |");
-    println!("|---|---|---|---|---|---|");
-    measure::<RapierBodies>("rapier", &ground, cores);
-    measure::<ReducedBodies>("reduced", &ground, cores);
+    let heading = "| engine | threads | steps/s | efficiency | processor us/step | waits |";
+    println!("{heading}\n|---|---|---|---|---|---|");
+    measure("rapier", cores, |threads| pace::<RapierBodies>(&ground, threads));
+    measure("reduced", cores, |threads| pace::<ReducedBodies>(&ground, threads));
+    println!("\nAs a fleet, {STEPS_A_CALL} steps a call\n");
+    println!("{heading}\n|---|---|---|---|---|---|");
+    measure("rapier", cores, |threads| fleet_pace::<RapierBodies>(&ground, threads));
+    measure("reduced", cores, |threads| fleet_pace::<ReducedBodies>(&ground, threads));
     Ok(())
 }
 
 /// Prints a row for each number of threads: 1, 2, 4 and so on to one a core.
-fn measure<B: Bodies + Send>(name: &str, ground: &Terrain, cores: usize) {
+fn measure(name: &str, cores: usize, pace: impl Fn(usize) -> Pace) {
     let counts = (0..).map(|power| 1 << power).take_while(|&threads| threads <= cores);
     let counts: Vec<usize> = counts.collect();
     let mut best = vec![Pace { steps_per_s: 0.0, processor_us: f64::MAX, waits: 0 }; counts.len()];
     // Numbers of threads take turns, so that a busy moment does not meet one of them alone.
     for _ in 0..REPEATS {
         for (best, &threads) in best.iter_mut().zip(&counts) {
-            let pace = pace::<B>(ground, threads);
+            let pace = pace(threads);
             best.steps_per_s = best.steps_per_s.max(pace.steps_per_s);
             best.processor_us = best.processor_us.min(pace.processor_us);
             best.waits = best.waits.max(pace.waits);
@@ -77,23 +87,15 @@ struct Pace {
 
 #[allow(clippy::cast_precision_loss)]
 fn pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
-    let drive = Actuation { pump_displacement: [0.8; 2], ..Actuation::idle(1200.0) };
-    let step = Duration::from_secs_f64(1.0 / f64::from(RATE_HZ));
-    let settled = || {
-        let (machine, effects) = (Machine::xt28(), Effects::default());
-        let strokes = PerWheel::splat(0.17);
-        let mut vehicle = Vehicle::<B>::with(&machine, &effects, ground, strokes, step);
-        (0..RATE_HZ).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
-        vehicle
-    };
+    let drive = driving();
     let mut groups: Vec<Vec<Vehicle<B>>> =
-        (0..threads).map(|_| (0..ENVIRONMENTS).map(|_| settled()).collect()).collect();
+        (0..threads).map(|_| (0..ENVIRONMENTS).map(|_| settled(ground)).collect()).collect();
     let work = |group: &mut Vec<Vehicle<B>>| {
-        let (begun_us, begun_waits) = (processor_us(), waits());
+        let (begun_us, begun_waits) = (processor_us(ClockId::ThreadCPUTime), waits());
         for _ in 0..STEPS {
             group.iter_mut().for_each(|vehicle| vehicle.step(&drive));
         }
-        (processor_us() - begun_us, waits() - begun_waits)
+        (processor_us(ClockId::ThreadCPUTime) - begun_us, waits() - begun_waits)
     };
     let begun = Instant::now();
     let (took_us, waits) = thread::scope(|scope| {
@@ -106,6 +108,38 @@ fn pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
     Pace { steps_per_s, processor_us: took_us / steps, waits }
 }
 
+/// The same of a fleet with as many environments. Its threads are the pool's, so what each of them had of
+/// the processor, and waited, is taken together from what the process did.
+#[allow(clippy::cast_precision_loss)]
+fn fleet_pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
+    let drive = driving();
+    let mut fleet: Fleet<B> = (0..threads * ENVIRONMENTS).map(|_| settled(ground)).collect();
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be made");
+    let begun_us = processor_us(ClockId::ProcessCPUTime);
+    let begun = Instant::now();
+    let waits = pool.install(|| {
+        (0..STEPS / STEPS_A_CALL as usize).for_each(|_| fleet.step(STEPS_A_CALL, |_, _| drive));
+        pool.broadcast(|_| waits()).iter().sum()
+    });
+    let took_s = begun.elapsed().as_secs_f64();
+    let steps = (threads * ENVIRONMENTS * STEPS) as f64;
+    let processor_us = (processor_us(ClockId::ProcessCPUTime) - begun_us) / steps;
+    Pace { steps_per_s: steps / took_s, processor_us, waits }
+}
+
+fn driving() -> Actuation {
+    Actuation { pump_displacement: [0.8; 2], ..Actuation::idle(1200.0) }
+}
+
+/// An environment that has stood for a second.
+fn settled<B: Bodies>(ground: &Terrain) -> Vehicle<B> {
+    let (machine, effects) = (Machine::xt28(), Effects::default());
+    let step = Duration::from_secs_f64(1.0 / f64::from(RATE_HZ));
+    let mut vehicle = Vehicle::with(&machine, &effects, ground, PerWheel::splat(0.17), step);
+    (0..RATE_HZ).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
+    vehicle
+}
+
 /// Times that this thread has given the processor up of its own accord; 0 where Linux does not tell.
 fn waits() -> u64 {
     let status = std::fs::read_to_string("/proc/thread-self/status").unwrap_or_default();
@@ -113,9 +147,9 @@ fn waits() -> u64 {
     line.and_then(|count| count.trim().parse().ok()).unwrap_or(0)
 }
 
-/// Time that this thread has had of the processor, us.
+/// Time that this thread, or the process, has had of the processor, us.
 #[allow(clippy::cast_precision_loss)]
-fn processor_us() -> f64 {
-    let now = clock_gettime(ClockId::ThreadCPUTime);
+fn processor_us(whose: ClockId) -> f64 {
+    let now = clock_gettime(whose);
     now.tv_sec as f64 * 1e6 + now.tv_nsec as f64 / 1e3
 }

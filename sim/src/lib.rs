@@ -10,6 +10,7 @@ mod actuators;
 mod blocks;
 mod bodies;
 pub mod effects;
+mod fleet;
 mod parts;
 mod plant;
 mod rapier;
@@ -27,6 +28,7 @@ pub use blocks::{
 };
 pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed, RollingDrag};
 pub use effects::Effects;
+pub use fleet::Fleet;
 pub use parts::{
     ArmPart, Brush, HullBall, Part, Parts, REFERENCE_STROKE_M, RollHinge, Tilt, TyrePart,
 };

@@ -64,6 +64,8 @@ impl Lock {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::super::accumulator::OIL_STIFFNESS_N_M;
     use super::*;
     use crate::effects::{AccumulatorGas, LockStiffness};
@@ -83,6 +85,24 @@ mod tests {
                 let [made_n, _] = lock.spring(lock.compression_m(force_n));
                 assert!((made_n - force_n).abs() < 1e-3, "{share}: {made_n}");
             }
+        }
+    }
+
+    proptest! {
+        /// Over the ranges of the catalogue, from an empty accumulator to beyond the relief valve.
+        #[test]
+        fn compression_inverts_force_whatever_the_gas(
+            share in 0.0..=1.0,
+            precharge_pa in 0.5e6..15.0e6,
+            volume_m3 in 0.1e-3..5.0e-3,
+            exponent in 1.0..1.8,
+            force_n in -300e3..300e3,
+        ) {
+            let gas = AccumulatorGas { share, precharge_pa, volume_m3, exponent };
+            let lock = Lock::new(&Machine::xt28(), &ArmEffects { gas, ..ArmEffects::default() });
+            let [made_n, slope_n_m] = lock.spring(lock.compression_m(force_n));
+            prop_assert!((made_n - force_n).abs() < 1e-3, "{made_n}");
+            prop_assert!(slope_n_m > 0.0);
         }
     }
 
@@ -121,6 +141,7 @@ mod tests {
         let (a, b) = (nominal.spring(0.03)[0], little.spring(0.03)[0]);
         assert!((a - b).abs() < 1e-3, "{a} {b}");
     }
+
     #[test]
     fn a_stiffer_lock_gives_way_less() {
         let lock_stiffness = LockStiffness { factor: 1.05 };

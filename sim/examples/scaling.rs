@@ -27,8 +27,12 @@ const RATE_HZ: u32 = 120;
 const ENVIRONMENTS: usize = 4;
 /// Steps of each environment that are timed.
 const STEPS: usize = 1200;
+/// Environments a thread of a fleet: fewer, and calling its threads together is a share of the work.
+const OF_A_FLEET: usize = 32;
 /// Steps that a fleet makes a call: a policy is asked twenty times a second.
 const STEPS_A_CALL: u32 = RATE_HZ / 20;
+/// Calls of a fleet that are timed.
+const CALLS: usize = 40;
 /// Times each number of threads is measured; the quickest counts, for others use the machine too.
 const REPEATS: usize = 5;
 
@@ -43,7 +47,7 @@ fn main() -> Result<(), String> {
     println!("{heading}\n|---|---|---|---|---|---|");
     measure("rapier", cores, |threads| pace::<RapierBodies>(&ground, threads));
     measure("reduced", cores, |threads| pace::<ReducedBodies>(&ground, threads));
-    println!("\nAs a fleet, {STEPS_A_CALL} steps a call\n");
+    println!("\nAs a fleet, {OF_A_FLEET} environments a thread, {STEPS_A_CALL} steps a call\n");
     println!("{heading}\n|---|---|---|---|---|---|");
     measure("rapier", cores, |threads| fleet_pace::<RapierBodies>(&ground, threads));
     measure("reduced", cores, |threads| fleet_pace::<ReducedBodies>(&ground, threads));
@@ -108,21 +112,22 @@ fn pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
     Pace { steps_per_s, processor_us: took_us / steps, waits }
 }
 
-/// The same of a fleet with as many environments. Its threads are the pool's, so what each of them had of
+/// The same of a fleet. Its threads are the pool's, so what each of them had of
 /// the processor, and waited, is taken together from what the process did.
 #[allow(clippy::cast_precision_loss)]
 fn fleet_pace<B: Bodies + Send>(ground: &Terrain, threads: usize) -> Pace {
     let drive = driving();
-    let mut fleet: Fleet<B> = (0..threads * ENVIRONMENTS).map(|_| settled(ground)).collect();
+    let size = threads * OF_A_FLEET;
+    let mut fleet: Fleet<B> = (0..size).map(|_| settled(ground)).collect();
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be made");
     let begun_us = processor_us(ClockId::ProcessCPUTime);
     let begun = Instant::now();
     let waits = pool.install(|| {
-        (0..STEPS / STEPS_A_CALL as usize).for_each(|_| fleet.step(STEPS_A_CALL, |_, _| drive));
+        (0..CALLS).for_each(|_| fleet.step(STEPS_A_CALL, |_, _| drive));
         pool.broadcast(|_| waits()).iter().sum()
     });
     let took_s = begun.elapsed().as_secs_f64();
-    let steps = (threads * ENVIRONMENTS * STEPS) as f64;
+    let steps = (size * CALLS) as f64 * f64::from(STEPS_A_CALL);
     let processor_us = (processor_us(ClockId::ProcessCPUTime) - begun_us) / steps;
     Pace { steps_per_s: steps / took_s, processor_us, waits }
 }

@@ -57,13 +57,17 @@ impl<B: Bodies + Send> Fleet<B> {
     ///
     /// # Panics
     ///
-    /// If there are not that many; so do the two below.
+    /// If there are not that many.
     #[must_use]
     pub fn state(&self, i: usize) -> &VehicleState {
         self.vehicles[i].state()
     }
 
     /// Vehicle `i` as it is now: stepped alike, it goes on bit for bit like the one in the fleet.
+    ///
+    /// # Panics
+    ///
+    /// If there are not that many.
     #[must_use]
     pub fn snapshot(&self, i: usize) -> Vehicle<B>
     where
@@ -73,6 +77,10 @@ impl<B: Bodies + Send> Fleet<B> {
     }
 
     /// Lets `vehicle` go on in the place of vehicle `i`: an episode begins anew.
+    ///
+    /// # Panics
+    ///
+    /// If there are not that many.
     pub fn restart(&mut self, i: usize, vehicle: Vehicle<B>) {
         self.vehicles[i] = vehicle;
     }

@@ -99,7 +99,8 @@ impl Arm {
     /// As [`Self::fill`], of an arm whose load is measured, so that one sees its relief valve shut.
     pub fn fill_shut(&self, state: &mut ArmState, input: &ArmInput, speed_m_s: f64, dt_s: f64) {
         let speed_m_s = speed_m_s + self.creep_m_s(input.load_n);
-        state.cylinder = self.cylinder.step_shut(state.cylinder, &input.motion, speed_m_s, dt_s);
+        let rate_m_s = input.motion.stroke_rate_m_s;
+        state.cylinder = self.cylinder.step_shut(state.cylinder, rate_m_s, speed_m_s, dt_s);
     }
 
     /// Speed at which oil finds another way than through the valve, extending > 0, m/s.

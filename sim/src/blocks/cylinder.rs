@@ -91,23 +91,23 @@ impl Cylinder {
         dt_s: f64,
     ) -> CylinderState {
         let [drawn_m, pushed_m] = self.lock.reach_m();
-        let next = self.step_shut(state, motion, speed_m_s, dt_s);
+        let next = self.step_shut(state, motion.stroke_rate_m_s, speed_m_s, dt_s);
         let rest_m = next.rest_m.clamp(motion.stroke_m + drawn_m, motion.stroke_m + pushed_m);
         CylinderState { rest_m, ..next }
     }
 
-    /// The same while the relief valve is known to be shut.
+    /// The same while the relief valve is known to be shut, so that it does not matter where the stroke is.
     #[must_use]
     pub fn step_shut(
         &self,
         state: CylinderState,
-        motion: &CylinderMotion,
+        stroke_rate_m_s: f64,
         speed_m_s: f64,
         dt_s: f64,
     ) -> CylinderState {
         CylinderState {
             rest_m: state.rest_m + speed_m_s * dt_s,
-            friction_n: self.stiction.step(state.friction_n, motion.stroke_rate_m_s, dt_s),
+            friction_n: self.stiction.step(state.friction_n, stroke_rate_m_s, dt_s),
         }
     }
 

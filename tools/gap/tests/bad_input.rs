@@ -6,21 +6,29 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use made_up::{series, signals, standing, swinging};
-use xt28_gap::diagnosis::{not_testable, swapped_wheels};
-use xt28_gap::{Channel, Series};
+use xt28_gap::diagnosis::{Signals, not_testable, swapped_wheels};
+use xt28_gap::{Channel, Series, Terrain};
 use xt28_machine::{Machine, Wheel};
+use xt28_sim::Ramp;
 use xt28_sim::effects::CATALOGUE;
 
 fn lacks(all: &BTreeMap<Channel, Series>, effect: &str) -> Option<(String, String)> {
     let catalogue: Vec<_> = CATALOGUE.iter().collect();
-    let found = not_testable(&signals(all), &catalogue);
+    let found = not_testable(signals(all).iter(), &Machine::xt28(), &catalogue);
     let one = found.into_iter().find(|one| one.effect.name == effect)?;
     Some((one.lacks, one.manoeuvre))
 }
 
+/// A machine that stands and logs its arms' loads alone.
+fn carrying() -> BTreeMap<Channel, Series> {
+    let mut all = standing();
+    all.retain(|channel, _| !matches!(channel, Channel::BorePressure(_) | Channel::RodPressure(_)));
+    all
+}
+
 #[test]
 fn a_machine_that_only_stands_shows_neither_arms_nor_steering_nor_drive() {
-    let all = standing();
+    let all = carrying();
     for (effect, manoeuvre) in [
         ("arm-delay", "single-arm"),
         ("valve-hysteresis", "single-arm"),
@@ -36,6 +44,24 @@ fn a_machine_that_only_stands_shows_neither_arms_nor_steering_nor_drive() {
     for effect in ["leakage-drift", "stroke-bias", "payload", "imu-offset"] {
         assert_eq!(lacks(&all, effect), None, "{effect}");
     }
+}
+
+#[test]
+fn ground_that_is_not_level_hides_what_a_machine_stands_and_travels_by() {
+    let all = carrying();
+    let ramp = Ramp { x_m: [3.0, 6.0, 8.0, 11.0], height_m: 0.3, y_min_m: -2.0, y_max_m: 2.0 };
+    let catalogue: Vec<_> = CATALOGUE.iter().collect();
+    let hidden = |terrain| {
+        let runs = [Signals::of_series("made up", &all, 20.0, terrain).unwrap()];
+        let all = not_testable(runs.iter(), &Machine::xt28(), &catalogue);
+        all.into_iter().map(|one| (one.effect.name, one.lacks)).collect::<BTreeMap<_, _>>()
+    };
+    let (level, uneven) = (hidden(Terrain::Flat), hidden(Terrain::ramp(&ramp)));
+    for effect in ["payload", "com-shift", "terrain-slope", "imu-offset", "soft-tyres"] {
+        assert!(!level.contains_key(effect), "{effect}");
+        assert!(uneven[effect].contains("level ground"), "{effect}: {}", uneven[effect]);
+    }
+    assert!(!uneven.contains_key("leakage-drift"), "arms hold a load on any ground");
 }
 
 #[test]

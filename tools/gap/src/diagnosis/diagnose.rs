@@ -5,7 +5,9 @@ use xt28_sim::effects::Effect;
 use super::belief::Base;
 use super::candidates::{Candidate, Docket};
 use super::evidence::Left;
+use super::excitation::Shown;
 use super::how_far::HowFar;
+use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, judge};
 use super::knob::{Knob, SHIFT_MAX};
@@ -15,6 +17,9 @@ use super::verdict::Diagnosis;
 
 /// A second cause must be worth this much, nats.
 const SECOND_MIN: f64 = 12.0;
+/// What a cause must explain that nothing in the runs would make the machine show, nats: twice what makes
+/// something as likely as nothing. Some effects bend to whatever else is there where they have nothing to do.
+const UNTESTED_MIN: f64 = 36.0;
 /// How far tolerances go, each by its own, where nobody knows beside what.
 const SHIFT_ALONE: f64 = 1.0;
 /// How many of the single candidates may be the first of a pair.
@@ -69,14 +74,15 @@ impl Inquiry {
         let first = docket(&self.believed.clone().into());
         let (unbent, alone) = (first.unbent(), first.apart(&[], SHIFT_ALONE));
         tell("trying every cause", 0.05);
-        let single = first.candidates(&self.catalogue);
+        let shown = Shown::of(self.runs.iter().map(|run| &run.signals), &self.machine);
+        let single = tested(first.candidates(&self.catalogue), &shown);
         let Some(best) = single.first() else {
             let (after, shifts) = (first.left(&[]), first.shifts(&[]));
             let apart = after.clone();
             return Findings { unbent, alone, apart, after, shifts, ..Findings::default() };
         };
         tell("trying second causes", 0.4);
-        let (pair, beside) = self.second(&docket, &single);
+        let (pair, beside) = self.second(&docket, &single, &shown);
         tell("looking at what is left", 0.7);
         let (pair, after) = owned(pair, &first, &beside);
         let nothing = &self.believed;
@@ -102,6 +108,7 @@ impl Inquiry {
         &self,
         docket: &dyn Fn(&Base) -> Docket<'a>,
         single: &[Candidate],
+        shown: &Shown,
     ) -> (Vec<[Candidate; 2]>, Docket<'a>) {
         let beside = |one: &Candidate| {
             let effects = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
@@ -112,7 +119,7 @@ impl Inquiry {
         };
         let mut first = single[0].clone();
         let mut court = beside(&first);
-        let mut seconds = court.candidates(&others(&first, &self.catalogue));
+        let mut seconds = tested(court.candidates(&others(&first, &self.catalogue)), shown);
         let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
         else {
             return (Vec::new(), court);
@@ -123,18 +130,27 @@ impl Inquiry {
                 likely.push(candidate.fit.hypothesis.effect);
             }
         }
-        let again = beside(&second).candidates(&others(&second, &likely));
+        let again = tested(beside(&second).candidates(&others(&second, &likely)), shown);
         if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
             let moved = better.fit.hypothesis != first.fit.hypothesis;
             first = better.clone();
             if moved {
                 court = beside(&first);
-                seconds = court.candidates(&[second.fit.hypothesis.effect]);
+                seconds = tested(court.candidates(&[second.fit.hypothesis.effect]), shown);
             }
         }
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
         (pairs.collect(), court)
     }
+}
+
+/// Those of `candidates` that the runs can show, and what is there beyond doubt all the same.
+fn tested(mut candidates: Vec<Candidate>, shown: &Shown) -> Vec<Candidate> {
+    candidates.retain(|candidate| {
+        let Hypothesis { effect, scope, .. } = candidate.fit.hypothesis;
+        candidate.score() > UNTESTED_MIN || shown.has(effect, scope)
+    });
+    candidates
 }
 
 /// Pairs by what their seconds explain of their own, and what each signal leaves under the best. All
@@ -157,4 +173,21 @@ fn owned(
     all.sort_by(|([_, a], _), ([_, b], _)| b.score().total_cmp(&a.score()));
     let after = all.first().map_or(Vec::new(), |(_, both)| both.clone());
     (all.into_iter().map(|(pair, _)| pair).collect(), after)
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::Scope;
+
+    use super::*;
+
+    #[test]
+    fn what_nothing_shows_is_no_candidate_unless_it_is_beyond_doubt() {
+        let nothing = Shown::of(std::iter::empty(), &xt28_machine::Machine::xt28());
+        let all = [("steer-gain", 20.0), ("arm-delay", 80.0), ("stroke-bias", 20.0)];
+        let all = all.map(|(name, nats)| Candidate::made_up(name, Scope::All, nats));
+        let kept = tested(all.to_vec(), &nothing);
+        let names: Vec<&str> = kept.iter().map(Candidate::name).collect();
+        assert_eq!(names, ["arm-delay", "stroke-bias"]);
+    }
 }

@@ -7,14 +7,16 @@
 mod measure;
 mod need;
 
-use xt28_sim::effects::Effect;
+use xt28_machine::{Machine, Wheel};
+use xt28_sim::effects::{Effect, Scope};
 
+use super::floor::Signal;
 use super::signals::Signals;
 use super::verdict::NotTestable;
 use measure::Excitation;
 use need::Need;
 
-/// What an effect needs to show; those not listed show on a machine that stands.
+/// What an effect needs to show; those not listed show on any machine, and wherever it stands.
 const NEEDS: &[(&str, &[Need])] = &[
     ("arm-gain", &[Need::ArmsMove(0.02)]),
     ("arm-delay", &[Need::ArmsMove(0.02)]),
@@ -38,30 +40,66 @@ const NEEDS: &[(&str, &[Need])] = &[
     ("rear-follower-lag", &[Need::Steers(0.05)]),
     ("throttle-delay", &[Need::ThrottleSteps(0.2)]),
     ("drive-lag", &[Need::ThrottleSteps(0.2)]),
-    ("rolling-resistance", &[Need::Rolls(3.0)]),
-    ("standstill-drag", &[Need::ArmsMoveStanding(0.03)]),
+    ("rolling-resistance", &[Need::Rolls(3.0), Need::Judged(Signal::DriveForce)]),
+    ("standstill-drag", &[Need::ArmsMoveStanding(0.03), Need::Judged(Signal::Weight)]),
     ("engine-droop", &[Need::Throttle(0.6)]),
-    ("slippery-ground", &[Need::Fixes, Need::Rolls(5.0)]),
+    ("slippery-ground", &[Need::Fixes, Need::Rolls(5.0), Need::Judged(Signal::TravelSpeed)]),
+    ("soft-tyres", &[Need::Judged(Signal::Roll)]),
+    ("payload", &[Need::Judged(Signal::Weight)]),
+    ("com-shift", &[Need::Judged(Signal::WeightX)]),
+    ("terrain-slope", &[Need::Judged(Signal::Roll)]),
+    ("imu-offset", &[Need::Judged(Signal::Roll)]),
     ("stroke-scale", &[Need::ArmsMove(0.05)]),
     ("pressure-scale", &[Need::LoadsDiffer(15e3)]),
-    ("wheel-speed-scale", &[Need::Rolls(3.0)]),
-    ("gnss-latency", &[Need::Fixes, Need::ThrottleSteps(0.2)]),
-    ("gnss-lever-arm", &[Need::Fixes, Need::Steers(0.1)]),
+    ("wheel-speed-scale", &[Need::Rolls(3.0), Need::Judged(Signal::WheelSpeed(Wheel::Fr))]),
+    ("gnss-latency", &[Need::Fixes, Need::ThrottleSteps(0.2), Need::Judged(Signal::TravelSpeed)]),
+    ("gnss-lever-arm", &[Need::Fixes, Need::Steers(0.1), Need::Judged(Signal::TravelCourse)]),
     ("frame-loss", &[Need::Commands]),
     ("command-jitter", &[Need::Commands]),
 ];
 
-/// The effects of `catalogue` that `runs` cannot show, each with what they lack and the scripted
-/// manoeuvre that has it.
-#[must_use]
-pub fn not_testable(runs: &[Signals], catalogue: &[&'static Effect]) -> Vec<NotTestable> {
-    let excitation = Excitation::of(runs);
-    let judge = |effect: &&'static Effect| {
-        let (_, needs) = NEEDS.iter().find(|(name, _)| *name == effect.name)?;
-        let (need, lacks) = needs.iter().find_map(|need| Some((need, need.unmet(&excitation)?)))?;
-        Some(NotTestable { effect, lacks, manoeuvre: need.manoeuvre().to_owned() })
-    };
-    catalogue.iter().filter_map(judge).collect()
+/// What a set of runs made the machine do, and so which effects can show in them.
+pub(super) struct Shown(Excitation);
+
+impl Shown {
+    /// What `runs` of `machine` made it do.
+    pub(super) fn of<'a>(
+        runs: impl Iterator<Item = &'a Signals> + Clone,
+        machine: &Machine,
+    ) -> Self {
+        Self(Excitation::of(runs, machine))
+    }
+
+    /// Whether an effect at these wheels can show; what others lack does not count.
+    pub(super) fn has(&self, effect: &Effect, scope: Scope) -> bool {
+        let did = if effect.has_scope() { self.0.at(scope) } else { self.0.clone() };
+        needs(effect).iter().all(|need| need.unmet(&did).is_none())
+    }
+
+    /// The effects of `catalogue` that cannot show at every wheel, each with what they lack and the
+    /// scripted manoeuvre that has it.
+    fn not_testable(&self, catalogue: &[&'static Effect]) -> Vec<NotTestable> {
+        let judge = |effect: &&'static Effect| {
+            let mut all = needs(effect).iter();
+            let (need, lacks) = all.find_map(|need| Some((need, need.unmet(&self.0)?)))?;
+            Some(NotTestable { effect, lacks, manoeuvre: need.manoeuvre().to_owned() })
+        };
+        catalogue.iter().filter_map(judge).collect()
+    }
+}
+
+/// The effects of `catalogue` that `runs` of `machine` cannot show, each with what they lack and the
+/// scripted manoeuvre that has it.
+pub fn not_testable<'a>(
+    runs: impl Iterator<Item = &'a Signals> + Clone,
+    machine: &Machine,
+    catalogue: &[&'static Effect],
+) -> Vec<NotTestable> {
+    Shown::of(runs, machine).not_testable(catalogue)
+}
+
+fn needs(effect: &Effect) -> &'static [Need] {
+    NEEDS.iter().find(|(name, _)| *name == effect.name).map_or(&[], |(_, needs)| needs)
 }
 
 #[cfg(test)]

@@ -84,7 +84,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
         cause.begins = None;
     }
-    let runs: Vec<_> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
+    let runs = inquiry.runs.iter().map(|run| &run.signals);
     let verdict = if any < 0.5 {
         Verdict::None
     } else if unknown > 0.5 {
@@ -108,7 +108,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         held_out_runs: held_out_runs(inquiry),
         looked_ahead: false,
         next: None,
-        not_testable: not_testable(&runs, &inquiry.catalogue),
+        not_testable: not_testable(runs, &inquiry.machine, &inquiry.catalogue),
         notes: notes(inquiry, findings, verdict),
         seconds: 0.0,
     };

@@ -1,8 +1,17 @@
 //! What a set of runs made the machine do, block by block.
 
-use xt28_machine::{PerWheel, Wheel};
+use std::collections::BTreeMap;
 
+use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_sim::Effects;
+use xt28_sim::effects::Scope;
+
+use super::super::floor::Signal;
+use super::super::generator::Generator;
 use super::super::signals::{DT_S, Samples, Signals};
+
+/// Time between two samples of a residual, s.
+const STEP_S: f64 = 0.1;
 
 /// An opening below this is a closed valve: the ECU's currents have no smaller step that flows.
 const CLOSED: f64 = 0.01;
@@ -50,13 +59,18 @@ pub(super) struct Excitation {
     pub(super) commands: usize,
     /// Fixes of a receiver.
     pub(super) fixes: usize,
+    /// For how long in all each signal of the whole machine could be judged, s.
+    pub(super) judged_s: BTreeMap<Signal, f64>,
 }
 
 impl Excitation {
-    pub(super) fn of(runs: &[Signals]) -> Self {
-        let most = |of: &dyn Fn(&Signals) -> f64| runs.iter().map(of).fold(0.0, f64::max);
+    pub(super) fn of<'a>(
+        runs: impl Iterator<Item = &'a Signals> + Clone,
+        machine: &Machine,
+    ) -> Self {
+        let most = |of: &dyn Fn(&Signals) -> f64| runs.clone().map(of).fold(0.0, f64::max);
         Self {
-            arms: PerWheel::from_fn(|wheel| arm(runs, wheel)),
+            arms: PerWheel::from_fn(|wheel| arm(runs.clone(), wheel)),
             openings: most(&openings),
             steers_rad: most(&|s| {
                 let turning = |&i: &usize| s.mean_wheel_speed_rad_s(i).abs() > STANDS_RAD_S;
@@ -70,13 +84,51 @@ impl Excitation {
                 let speeds = (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i).abs());
                 speeds.filter(|speed| *speed > STANDS_RAD_S).sum::<f64>() * DT_S * RADIUS_M
             }),
-            commands: runs.iter().map(commands).sum(),
-            fixes: runs.iter().map(|s| s.fixes.len()).sum(),
+            commands: runs.clone().map(commands).sum(),
+            fixes: runs.clone().map(|s| s.fixes.len()).sum(),
+            judged_s: judged_s(runs, machine),
         }
+    }
+
+    /// The same as far as arms at `scope` are concerned: the others did whatever one asks.
+    pub(super) fn at(&self, scope: Scope) -> Self {
+        let arms =
+            PerWheel::from_fn(|w| if scope.contains(w) { self.arms[w] } else { ArmUse::ANY });
+        Self { arms, ..self.clone() }
     }
 }
 
-fn arm(runs: &[Signals], wheel: Wheel) -> ArmUse {
+impl ArmUse {
+    /// Everything, for as long as one likes.
+    const ANY: Self = Self {
+        moves_m: f64::INFINITY,
+        turns_m: f64::INFINITY,
+        moves_standing_m: f64::INFINITY,
+        load_range_n: f64::INFINITY,
+        holds_s: f64::INFINITY,
+        unloaded_s: f64::INFINITY,
+    };
+}
+
+/// For how long the signals that watch the whole machine could be judged, s.
+#[allow(clippy::cast_precision_loss)]
+fn judged_s<'a>(
+    runs: impl Iterator<Item = &'a Signals>,
+    machine: &Machine,
+) -> BTreeMap<Signal, f64> {
+    let mut all = BTreeMap::new();
+    for s in runs {
+        for generator in [Generator::Drive, Generator::Stance, Generator::Travel] {
+            for residual in generator.residuals(s, machine, &Effects::default()) {
+                let judged = residual.values.iter().filter(|value| value.is_finite()).count();
+                *all.entry(residual.signal).or_insert(0.0) += judged as f64 * STEP_S;
+            }
+        }
+    }
+    all
+}
+
+fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, wheel: Wheel) -> ArmUse {
     let mut all = ArmUse::default();
     for s in runs {
         let (stroke, opening) = (&s.stroke_m[wheel], &s.opening[wheel]);

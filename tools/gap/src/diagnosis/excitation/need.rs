@@ -2,10 +2,14 @@
 
 use xt28_machine::{PerWheel, Wheel};
 
+use super::super::floor::Signal;
 use super::measure::{ArmUse, Excitation};
 
 /// Commands that must change before their lateness or loss says anything.
 const COMMANDS: usize = 3;
+
+/// For how long what is judged on some ground alone must have been there, s.
+const JUDGED_S: f64 = 2.0;
 
 /// One thing that the machine must have done; the number is the least that will do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +40,9 @@ pub(super) enum Need {
     Fixes,
     /// Commands that change.
     Commands,
+    /// A signal that could be judged for [`JUDGED_S`] at all: how the machine stands and travels, and what
+    /// drives it, is judged on level ground alone.
+    Judged(Signal),
 }
 
 impl Need {
@@ -80,6 +87,15 @@ impl Need {
             Self::Rolls(m) => (did.rolls_m < m)
                 .then(|| format!("no run rolls {m:.0} m; the longest is {:.1} m", did.rolls_m)),
             Self::Fixes => (did.fixes == 0).then(|| "no fix of a receiver".to_owned()),
+            Self::Judged(signal) => {
+                let is_s = did.judged_s.get(&signal).copied().unwrap_or(0.0);
+                (is_s < JUDGED_S).then(|| {
+                    format!(
+                        "{signal} could be judged for {is_s:.1} s of {JUDGED_S:.0} s needed, on \
+                         level ground and with loads on their scale"
+                    )
+                })
+            }
             Self::Commands => (did.commands < COMMANDS).then(|| "no command changes".to_owned()),
         }
     }
@@ -92,7 +108,11 @@ impl Need {
             Self::LoadsDiffer(_) | Self::Commands => "multisine",
             Self::ArmsHold(_) => "arm-step",
             Self::Steers(_) => "s-turn",
-            Self::ThrottleSteps(_) | Self::Throttle(_) | Self::Rolls(_) | Self::Fixes => "straight",
+            Self::ThrottleSteps(_)
+            | Self::Throttle(_)
+            | Self::Rolls(_)
+            | Self::Fixes
+            | Self::Judged(_) => "straight",
         }
     }
 }

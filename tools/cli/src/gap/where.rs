@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
-use xt28_gap::diagnosis::{Evidence, Generator, Knob, Signals};
-use xt28_gap::{Decoder, Known, Mapping, RunSet};
+use xt28_gap::diagnosis::{Evidence, Floors, Generator, Knob, Signals};
+use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
@@ -19,7 +19,8 @@ use crate::{Failure, Verdict};
 /// A block's gap is the root mean square of what is left once masses and stiffnesses are at their best,
 /// in units of what separates two models of one nominal machine (as in `diagnose`; the JSON has its
 /// square as well, as gap_over_floor). A sound machine, whose every part is a little off, shows up to
-/// about 2.5; beyond 3.2 there is something to explain. Blocks that nothing was measured of have none.
+/// about 2.5; beyond 3.2 there is something to explain. Blocks of which nothing can be judged have none: how the
+/// machine stands, travels and is driven is judged on level ground alone.
 #[derive(Args)]
 pub(crate) struct Where {
     /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames
@@ -71,8 +72,14 @@ impl Where {
         for note in remarks(&set, &given)? {
             eprintln!("{note}");
         }
-        let runs = set.runs().iter().map(|run| Signals::new(&run.log, run.terrain.clone()));
-        let runs: Vec<Signals> = runs.collect::<Result<_, _>>()?;
+        let signals = |run: &KnownRun| {
+            let signals = Signals::new(&run.log, run.terrain.clone())?;
+            Ok::<_, GapError>(signals.with_noise_of(run.log.all_series(), &machine))
+        };
+        let runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
+        if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
+            eprintln!("{remark}");
+        }
         let evidence = Evidence::new(&runs, &machine, effects.effects(), &Knob::tolerances());
         let mut gaps = evidence.gaps();
         // The largest first; what has none comes last.
@@ -105,7 +112,7 @@ fn table(gaps: &[(Generator, Option<f64>)]) -> String {
         let (gap, mark) = match gap {
             Some(gap) if is_to_explain(Some(*gap)) => (format!("{gap:.2}"), "  <- to explain"),
             Some(gap) => (format!("{gap:.2}"), ""),
-            None => ("-".to_owned(), "  nothing measured"),
+            None => ("-".to_owned(), "  nothing to judge"),
         };
         out += &format!("{:<26} {gap:>14}{mark}\n", generator.to_string());
     }
@@ -125,7 +132,7 @@ mod tests {
         assert!(lines[0].ends_with("gap over noise"));
         assert!(lines[1].ends_with("4.50  <- to explain"), "{table}");
         assert!(lines[2].ends_with("0.30"), "{table}");
-        assert!(lines[3].ends_with("-  nothing measured"), "{table}");
+        assert!(lines[3].ends_with("-  nothing to judge"), "{table}");
         let json: serde_json::Value = serde_json::from_str(&json(&gaps)).unwrap();
         assert_eq!(json["where"][0]["gap_over_floor"], 20.25);
         assert!(json["where"][2]["gap_over_noise"].is_null());

@@ -170,10 +170,10 @@ impl Generator {
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
             signal,
-            values: thin(&raw, signal.floor().sigma),
+            values: thin(&raw, s.floors.sigma(self, signal)),
         };
         let thinned = |signal: Signal, raw: Samples| {
-            let sigma = signal.floor().sigma;
+            let sigma = s.floors.sigma(self, signal);
             let values = raw.into_iter().map(|value| value / sigma).collect();
             Residual { generator: self, signal, values }
         };

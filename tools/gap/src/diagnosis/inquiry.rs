@@ -1,5 +1,6 @@
 //! A question put to the logs of one machine: what is known, what was driven, what may be the matter.
 
+use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect};
@@ -45,9 +46,13 @@ impl FieldRun {
 }
 
 impl Inquiry {
-    /// The nominal machine with every effect of the catalogue in question.
+    /// The nominal machine with every effect of the catalogue in question. Floors become those of the
+    /// logs' own noise.
     #[must_use]
-    pub fn new(machine: Machine, runs: Vec<FieldRun>) -> Self {
+    pub fn new(machine: Machine, mut runs: Vec<FieldRun>) -> Self {
+        runs.par_iter_mut().for_each(|run| {
+            run.signals = run.signals.clone().with_noise_of(run.log.all_series(), &machine);
+        });
         Self {
             machine,
             believed: Effects::default(),

@@ -18,6 +18,7 @@ use super::excitation::not_testable;
 use super::hypothesis::Fit;
 use super::inquiry::Inquiry;
 use super::knob::Knob;
+use super::noise::Floors;
 use super::verdict::{Diagnosis, ShareOf, Verdict};
 use super::wheel_order::axles_alike;
 use beginning::is_told;
@@ -129,6 +130,7 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
     if held_out_runs(inquiry).is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
+    notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
     if !alike.is_empty() && verdict != Verdict::None {
         notes.push(format!(

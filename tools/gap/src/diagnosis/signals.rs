@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use xt28_ecus::pins;
-use xt28_machine::{PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::instant::Instant;
+use super::noise::Floors;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 use uncut::{CUT_M, uncut};
 
@@ -90,6 +91,8 @@ pub struct Signals {
     /// Heading with its rate, with the instants at which they were told, which need not be those of fixes:
     /// s, rad, unwound, counter-clockwise from east, rad/s.
     pub headings: Vec<[f64; 3]>,
+    /// What separates two models of one machine with readings as noisy as these.
+    pub floors: Floors,
     /// Made of the above when first asked for.
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
@@ -103,6 +106,14 @@ impl Signals {
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: &FieldLog, terrain: Terrain) -> Result<Self, GapError> {
         Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)
+    }
+
+    /// The same with its floors lifted where `readings`, which it was made of, are noisier than floors
+    /// have it, by what that makes of each block of `machine`.
+    #[must_use]
+    pub fn with_noise_of(self, readings: &AllSeries, machine: &Machine) -> Self {
+        let floors = Floors::of(readings, &self, machine);
+        Self { floors, ..self }
     }
 
     /// `series` sampled for `duration_s` s, under the name of `name`.
@@ -178,6 +189,7 @@ impl Signals {
             pitch_rad: sample(Channel::Pitch),
             fixes: receiver::fixes(series),
             headings: receiver::headings(series),
+            floors: Floors::default(),
             instants: OnceLock::new(),
             antenna_leans_m: OnceLock::new(),
             scrubs: OnceLock::new(),

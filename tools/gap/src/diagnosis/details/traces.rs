@@ -63,7 +63,11 @@ fn trace(inquiry: &Inquiry, pair: &Pair, i: usize) -> Trace {
     let run = &inquiry.runs[pair.run];
     let (before, after) = (&pair.before[i], &pair.after[i]);
     let (unit, per_si, measured) = reading(pair.generator, before.signal, &run.signals);
-    let per_floor = if unit == FLOORS { 1.0 } else { before.signal.floor().sigma * per_si };
+    let per_floor = if unit == FLOORS {
+        1.0
+    } else {
+        run.signals.floors.sigma(pair.generator, before.signal) * per_si
+    };
     let error = |values: &Samples| values.iter().map(|value| value * per_floor).collect();
     Trace {
         title: format!(

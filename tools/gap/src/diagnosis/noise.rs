@@ -159,11 +159,11 @@ mod tests {
 
     use super::*;
 
-    /// A reading that swings by 0.1 over 12 s, with white noise, cut to steps.
+    /// A reading that swings by 0.1 within 13 s, with white noise, cut to steps.
     fn reading(sigma: f64, step: f64, seed: u64) -> Series {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut noise = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
-        let value = |at_s: f64, noise: f64| 0.05 * (at_s * 0.5236).sin() + sigma * noise;
+        let value = |at_s: f64, noise: f64| 0.05 * (0.5 * at_s).sin() + sigma * noise;
         (0..3000_u32)
             .map(|i| f64::from(i) * 0.01)
             .map(|at_s| (at_s, (value(at_s, noise()) / step).floor() * step))

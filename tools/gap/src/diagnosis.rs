@@ -51,8 +51,9 @@ pub use regime::{Direction, Regime};
 pub use search::search;
 pub(crate) use signals::needed;
 pub use signals::{DT_S, Samples, Signals};
+pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
-    Beginning, Cause, Diagnosis, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,
+    Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,
     Together, Verdict,
 };
 pub use wheel_order::{Swap, swapped_wheels};

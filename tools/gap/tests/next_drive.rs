@@ -83,6 +83,8 @@ fn a_late_joint_and_a_slow_one_are_told_apart_in_a_bend() {
         (manoeuvre.name, vec!["steer-delay", "steer-lag"])
     );
     assert!(next.nats > 1.0, "{}", next.nats);
+    let worth: Vec<f64> = next.others.iter().map(|drive| drive.nats).collect();
+    assert!(worth.len() > 2 && worth.is_sorted_by(|a, b| a >= b) && worth[0] <= next.nats);
 }
 
 #[test]

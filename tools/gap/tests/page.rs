@@ -6,8 +6,8 @@ use std::path::Path;
 
 use made_up::{signals, swinging};
 use xt28_gap::diagnosis::{
-    Cause, Details, Diagnosis, Estimate, FieldRun, Inquiry, Next, NotTestable, Place, ShareOf,
-    Shrink, Spot, Together, Verdict,
+    Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Inquiry, Next, NotTestable, Place,
+    ShareOf, Shrink, Spot, Together, Verdict,
 };
 use xt28_gap::page::{Subject, headline, html, text};
 use xt28_gap::{Decoder, FieldLog, Mapping};
@@ -95,6 +95,7 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
             manoeuvre: HOSTILE.to_owned(),
             separates: vec!["arm-delay", "valve-lag"],
             nats: 3.1,
+            others: vec![Drive { manoeuvre: HOSTILE.to_owned(), nats: 1.2 }],
         }),
         not_testable: vec![NotTestable {
             effect: find("steer-lag").unwrap(),
@@ -115,6 +116,21 @@ fn page_of(diagnosis: &Diagnosis) -> String {
     let details = Details::new(&inquiry, diagnosis);
     let subject = Subject { name: HOSTILE.to_owned(), date: HOSTILE.to_owned() };
     html(&subject, &inquiry.machine, diagnosis, &details)
+}
+
+#[test]
+fn who_decides_reads_how_large_it_is_and_who_mends_which_gap_has_which_share() {
+    let page = page(Verdict::Effect);
+    let [decides, mends] = page.split("<section class=\"page\">").skip(1).collect::<Vec<_>>()[..]
+    else {
+        panic!("two pages")
+    };
+    assert!(decides.contains("0.210 (0.190 to 0.230) at the front axle"), "{decides}");
+    assert!(
+        mends.contains("<td class=\"number\">84.0</td><td class=\"number\">50 %</td>"),
+        "{mends}"
+    );
+    assert!(mends.contains("next best: "), "{mends}");
 }
 
 /// Every tag of a page is closed, in order.

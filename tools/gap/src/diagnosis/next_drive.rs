@@ -16,7 +16,7 @@ use super::details::file_name;
 use super::generator::Generator;
 use super::inquiry::Inquiry;
 use super::signals::Signals;
-use super::verdict::{Cause, Diagnosis, Next, WORTH_TELLING};
+use super::verdict::{Cause, Diagnosis, Drive, Next, WORTH_TELLING};
 use crate::{FieldLog, GapError, Replay};
 
 pub use manoeuvre::Manoeuvre;
@@ -51,12 +51,15 @@ pub fn next_drive(
     // What a drive that was made could tell, it has told.
     let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(run.log.name(), m.name));
     let left: Vec<Manoeuvre> = Manoeuvre::all().into_iter().filter(|m| !made(m)).collect();
-    let ranked: Vec<(f64, Manoeuvre)> =
+    let mut ranked: Vec<(f64, Manoeuvre)> =
         left.into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
-    let best = ranked.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(best.filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, manoeuvre)| {
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut ranked = ranked.into_iter();
+    Ok(ranked.next().filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, best)| {
         let separates = rivals.iter().map(|rival| rival.name).collect();
-        (Next { manoeuvre: manoeuvre.name.to_owned(), separates, nats }, manoeuvre)
+        let drive = |(nats, m): (f64, Manoeuvre)| Drive { manoeuvre: m.name.to_owned(), nats };
+        let others = ranked.map(drive).collect();
+        (Next { manoeuvre: best.name.to_owned(), separates, nats, others }, best)
     }))
 }
 

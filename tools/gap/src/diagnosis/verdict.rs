@@ -218,6 +218,17 @@ pub struct Next {
     pub separates: Vec<&'static str>,
     /// How well: expected logarithm of the odds, nats.
     pub nats: f64,
+    /// The other manoeuvres that no run is of, best first.
+    pub others: Vec<Drive>,
+}
+
+/// A manoeuvre and what it is worth.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drive {
+    /// Name of the scripted manoeuvre.
+    pub manoeuvre: String,
+    /// How well it tells apart: expected logarithm of the odds, nats.
+    pub nats: f64,
 }
 
 /// An effect that stays in the dark.

@@ -1,7 +1,7 @@
 //! What was taken for granted, what would settle it, what is wrong with the logs.
 
 use super::svg::escape;
-use super::words::{how_well, rivals};
+use super::words::{after_that, how_well, rivals};
 use crate::diagnosis::{Details, Diagnosis, Knob};
 
 /// Faults of logs listed.
@@ -53,6 +53,9 @@ pub(super) fn settles(diagnosis: &Diagnosis) -> String {
             rivals(next, " and "),
             how_well(next)
         ));
+        if !next.others.is_empty() {
+            items.push(format!("{}.", after_that(next)));
+        }
     } else if !diagnosis.looked_ahead {
         items.push("Which drive would tell causes apart was not asked.".to_owned());
     }

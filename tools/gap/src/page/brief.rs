@@ -8,8 +8,8 @@ use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
 use super::svg::{Anchor, Svg, escape};
-use super::words::{judged_on, percent, rivals, shrinks};
-use crate::diagnosis::{Details, Diagnosis, ShareOf, Verdict};
+use super::words::{estimate, judged_on, on, percent, rivals, shrinks};
+use crate::diagnosis::{Cause, Details, Diagnosis, ShareOf, Verdict};
 
 /// The page's body.
 pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
@@ -17,9 +17,10 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
     for cause in diagnosis.stood_by() {
         let _ = write!(
             meanings,
-            "<p class=\"meaning\"><b>{}</b>: {}.</p>",
+            "<p class=\"meaning\"><b>{}</b>: {}. <small>{}</small></p>",
             escape(cause.effect.name),
-            escape(cause.effect.meaning)
+            escape(cause.effect.meaning),
+            escape(&sizes(cause))
         );
     }
     format!(
@@ -31,6 +32,14 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
         next(diagnosis),
         basis(details)
     )
+}
+
+/// How large a cause is, at which wheels.
+fn sizes(cause: &Cause) -> String {
+    let sizes: Vec<String> = cause.parameters.iter().map(estimate).collect();
+    let at =
+        if cause.effect.has_scope() { format!(" at {}", on(cause.scope)) } else { String::new() };
+    format!("{}{at}", sizes.join(", "))
 }
 
 /// A bar of the probabilities.

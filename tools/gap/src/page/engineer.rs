@@ -17,6 +17,9 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
          <p class=\"small\">Each block of the simulator driven with measured inputs; root mean square of its error in noise floors (1 is what two models of a sound machine differ), before tolerances are taken out. Blank: did not happen.</p>",
         heat::draw(details)
     );
+    if !diagnosis.places.is_empty() {
+        let _ = write!(out, "<h2>Where: the largest gaps</h2>{}", table::places(diagnosis));
+    }
     let _ = write!(
         out,
         "<h2>What: causes</h2>{}{}",

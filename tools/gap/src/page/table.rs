@@ -3,11 +3,40 @@
 use core::fmt::Write as _;
 
 use super::svg::escape;
-use super::words::{by_share, elsewhere, judged_on, on, percent, short, shrinks};
-use crate::diagnosis::{Cause, Details, Diagnosis, Shrink};
+use super::words::{
+    by_share, elsewhere, is_elsewhere, judged_on, on, percent, share_of, short, shrinks,
+};
+use crate::diagnosis::{Cause, Details, Diagnosis, Place, Shrink};
 
 /// Causes listed.
 const CAUSES: usize = 6;
+/// Places listed.
+const PLACES: usize = 8;
+
+/// The largest gaps, with what each has to do with that of the whole machine.
+pub(super) fn places(diagnosis: &Diagnosis) -> String {
+    let row = |place: &Place| {
+        format!(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td><td class=\"number\">{}</td></tr>",
+            place.spot.part,
+            place.spot.scope,
+            escape(&place.spot.residual),
+            short(place.gap_over_noise),
+            percent(place.share)
+        )
+    };
+    let rows: String = diagnosis.places.iter().take(PLACES).map(row).collect();
+    format!(
+        "<table><thead><tr><th>block</th><th>wheels</th><th>signal</th><th>gap over noise</th><th>share</th></tr></thead><tbody>{rows}</tbody></table>\
+         <p class=\"small\">Gap over noise: root mean square once tolerances are at their best. {}.</p>",
+        capitalised(share_of(diagnosis.share_of))
+    )
+}
+
+fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
 
 /// The likeliest causes.
 pub(super) fn causes(diagnosis: &Diagnosis) -> String {
@@ -15,7 +44,7 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
     for cause in diagnosis.causes.iter().take(CAUSES) {
         let _ = write!(
             rows,
-            "<tr><td class=\"number\">{}</td><td><b>{}</b><br><small>{}</small></td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            "<tr><td class=\"number\">{}</td><td><b>{}</b><br><small>{}</small></td><td>{}</td><td>{}</td><td>{}</td><td class=\"number\">{}</td></tr>",
             percent(cause.probability),
             escape(cause.effect.name),
             escape(cause.effect.meaning),
@@ -41,10 +70,12 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
 }
 
 fn wheels(cause: &Cause) -> String {
-    match cause.scopes.len() {
-        _ if !cause.effect.has_scope() => "–".to_owned(),
-        0 | 1 => on(cause.scope),
-        _ => elsewhere(cause),
+    if !cause.effect.has_scope() {
+        "–".to_owned()
+    } else if is_elsewhere(cause) {
+        elsewhere(cause)
+    } else {
+        on(cause.scope)
     }
 }
 

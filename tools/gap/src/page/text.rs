@@ -4,7 +4,8 @@ use core::fmt::Write as _;
 
 use super::headline;
 use super::words::{
-    elsewhere, estimate, how_well, judged_on, percent, rivals, share_of, short, shrink,
+    after_that, elsewhere, estimate, how_well, is_elsewhere, judged_on, percent, rivals, share_of,
+    short, shrink,
 };
 use crate::diagnosis::{Cause, Diagnosis};
 
@@ -43,6 +44,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
             rivals(next, ", "),
             how_well(next)
         );
+        if !next.others.is_empty() {
+            let _ = writeln!(out, "  {}", after_that(next));
+        }
     }
     if !diagnosis.not_testable.is_empty() {
         let _ = writeln!(
@@ -104,7 +108,7 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
         if !cause.alike().is_empty() {
             let _ = writeln!(out, "{:>11}  not to be told from {}", "", cause.alike().join(", "));
         }
-        if cause.scopes.len() > 1 {
+        if is_elsewhere(cause) {
             let _ = writeln!(out, "{:>11}  wheels not told apart: {}", "", elsewhere(cause));
         }
         if let Some(begins) = &cause.begins {

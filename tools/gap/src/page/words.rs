@@ -3,10 +3,13 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Estimate, Next, ShareOf, Shrink};
+use crate::diagnosis::{Cause, Drive, Estimate, Next, ShareOf, Shrink, WORTH_TELLING};
 
 /// Beyond this many nats, odds of a thousand, a figure says no more than a word: models are not that good.
 const EASILY_NATS: f64 = 7.0;
+
+/// Wheels that a cause may be at of which each is told.
+const ELSEWHERE: usize = 4;
 
 /// On which runs a shrink was told, after "the gap shrinks on".
 pub(super) const fn judged_on(held_out_runs: &[String]) -> &'static str {
@@ -44,6 +47,13 @@ pub(super) fn how_well(next: &Next) -> String {
     }
 }
 
+/// The drives that would tell less, best first; empty without any.
+pub(super) fn after_that(next: &Next) -> String {
+    let of = |drive: &Drive| format!("{} ({:.1} nats)", drive.manoeuvre, drive.nats);
+    let all: Vec<String> = next.others.iter().map(of).collect();
+    if all.is_empty() { String::new() } else { format!("next best: {}", all.join(", ")) }
+}
+
 /// The wheels of a scope, in words.
 pub(super) fn on(scope: Scope) -> String {
     match scope {
@@ -65,10 +75,21 @@ pub(super) fn by_share(cause: &Cause) -> Vec<(Scope, f64)> {
     scopes
 }
 
-/// The same, each with its share of the probability.
+/// The likeliest of the same, each with its share of the probability.
 pub(super) fn elsewhere(cause: &Cause) -> String {
     let each = |(scope, share): (Scope, f64)| format!("{} ({})", on(scope), percent(share));
-    by_share(cause).into_iter().map(each).collect::<Vec<_>>().join(", ")
+    let mut told: Vec<String> = by_share(cause).into_iter().map(each).collect();
+    let left = told.len().saturating_sub(ELSEWHERE);
+    if left > 1 {
+        told.truncate(ELSEWHERE);
+        told.push(format!("{left} others"));
+    }
+    told.join(", ")
+}
+
+/// Whether it is worth telling at which wheels a cause may be: not of one that is as good as ruled out.
+pub(super) fn is_elsewhere(cause: &Cause) -> bool {
+    cause.scopes.len() > 1 && cause.probability >= WORTH_TELLING
 }
 
 /// A share of one in percent; never a certainty that a finite log cannot give, for or against.
@@ -151,7 +172,12 @@ mod tests {
 
     #[test]
     fn a_drive_that_tells_with_ease_has_no_figure() {
-        let next = |nats| Next { manoeuvre: String::new(), separates: vec!["a", "none"], nats };
+        let next = |nats| Next {
+            manoeuvre: String::new(),
+            separates: vec!["a", "none"],
+            nats,
+            others: Vec::new(),
+        };
         assert_eq!(how_well(&next(549_918.9)), " easily");
         assert_eq!(how_well(&next(3.0)), ", 3.0 nats expected (odds of 20 to 1)");
         assert_eq!(rivals(&next(3.0), " and "), "a and no effect");

@@ -17,7 +17,7 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
     for cause in diagnosis.stood_by() {
         let _ = write!(
             meanings,
-            "<p class=\"meaning\"><b>{}</b>: {}. <small>{}</small></p>",
+            "<p class=\"meaning\"><b>{}</b>: {}.<br><small>{}</small></p>",
             escape(cause.effect.name),
             escape(cause.effect.meaning),
             escape(&sizes(cause))

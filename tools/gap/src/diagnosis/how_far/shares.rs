@@ -5,7 +5,7 @@ use xt28_sim::Held;
 use xt28_sim::effects::Block;
 
 use super::HowFar;
-use super::course::Horizon;
+use super::course::{Horizon, Quantity};
 use super::squares;
 use super::twin::Course;
 
@@ -30,7 +30,11 @@ impl HowFar {
                 let horizon = Horizon::FiveSeconds;
                 let foretell =
                     |c: &Course| c.foretell(&self.machine, &self.believed, horizon, held);
-                let blocks = self.squares_of(&foretell, horizon, |_| true);
+                let mut blocks = self.squares_of(&foretell, horizon, |_| true);
+                if held.drive {
+                    // Pressures are the drive's own too, and nothing of the simulator feels them.
+                    squares::take_measured(&mut blocks, Quantity::PumpPressure);
+                }
                 squares::gap(&blocks)
             })
             .collect();

@@ -67,6 +67,14 @@ pub(super) fn of_stretch(measured: &[Row], stretch: &Stretch, horizon: Horizon) 
     pairs.chunks(BLOCK).map(block).collect()
 }
 
+/// Takes `quantity` from the log: it is off by nothing wherever it was judged.
+pub(super) fn take_measured(blocks: &mut [Squares], quantity: Quantity) {
+    for block in blocks {
+        let sums = block.sum.iter_mut().zip(Quantity::ALL);
+        sums.filter(|(_, of)| *of == quantity).for_each(|(sum, _)| *sum = 0.0);
+    }
+}
+
 /// The gap over all blocks: mean over signals of the root mean square, in floors.
 pub(super) fn gap(blocks: &[Squares]) -> f64 {
     total(blocks.iter()).gap()

@@ -16,6 +16,7 @@ use std::sync::Arc;
 use xt28_bus::candump::Reader;
 
 use crate::recorded::{self, MAGIC};
+use crate::log_fault::told;
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
 use gzip::{Failed, Gzip};
 use intake::Intake;
@@ -171,6 +172,12 @@ impl FieldLog {
     }
 
     /// Frames read, of any message.
+    /// The same for people, a line each: what befell many messages alike is one line.
+    #[must_use]
+    pub fn told_faults(&self) -> Vec<String> {
+        told(&self.faults)
+    }
+
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames

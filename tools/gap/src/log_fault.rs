@@ -1,9 +1,14 @@
-//! What is wrong with a log without making it unreadable: frames lost, cut short, or out of order.
+//! What is wrong with a log without making it unreadable: frames lost, repeated, cut short, or out of
+//! order; readings that froze.
+
+mod told;
 
 use std::fmt;
 use std::sync::Arc;
 
 use xt28_bus::candump::Skipped;
+
+pub(crate) use told::told;
 
 /// Something a reader of the result must know of its log. Displays as one line with file and line.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +64,19 @@ pub enum FaultKind {
         gaps: u64,
         /// Periods without a frame, over all gaps.
         frames: u64,
+        /// Frames that should be there, those included.
+        due: u64,
         /// The longest time without, s.
         longest_s: f64,
+    },
+    /// Frames of a cyclic message are there more than once; the repeats are left out.
+    Repeated {
+        /// Message.
+        message: String,
+        /// Frames left out.
+        frames: u64,
+        /// Frames in the log, those included.
+        of: u64,
     },
     /// Frames have fewer bytes than the DBC says; they are left out.
     WrongLength {
@@ -163,7 +179,7 @@ impl fmt::Display for LogFault {
             FaultKind::Broken { problem, messages } => {
                 write!(f, "no CAN frame: {problem}; {messages} such messages are left out")
             }
-            FaultKind::Dropped { message, gaps, frames, longest_s } => write!(
+            FaultKind::Dropped { message, gaps, frames, longest_s, .. } => write!(
                 f,
                 "{message} is missing {frames} frames in {gaps} gaps from here on, the longest {:.1} ms; the value before is held",
                 longest_s * 1e3
@@ -185,6 +201,10 @@ impl fmt::Display for LogFault {
                 let there = kinds.iter().filter(|(frames, _)| **frames > 0);
                 let each: Vec<String> =
                     there.map(|(n, kind)| format!("{n} {kind} frames")).collect();
+            FaultKind::Repeated { message, frames, of } => write!(
+                f,
+                "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"
+            ),
                 write!(f, "from here on {}; nothing is read from them", each.join(", "))
             }
             FaultKind::Unbelievable { channel, problem, values } => write!(

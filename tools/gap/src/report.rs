@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::log_fault::told;
 use crate::{LogFault, Row};
 
 /// Result of one replay.
@@ -31,8 +32,8 @@ impl Report {
         judged.peek().is_some() && judged.all(|passed| passed)
     }
 
-    /// A table with one line a signal, a line for each fault of the log and
-    /// each note, then the verdict.
+    /// A table with one line a signal, a line for each fault of the log (one for what befell many
+    /// messages alike) and each note, then the verdict.
     #[must_use]
     pub fn table(&self) -> String {
         const HEAD: [&str; 9] =
@@ -45,7 +46,7 @@ impl Report {
         for row in &rows {
             table += &line(row, &widths);
         }
-        for fault in &self.faults {
+        for fault in told(&self.faults) {
             table += &format!("{fault}\n");
         }
         for note in &self.notes {

@@ -116,11 +116,11 @@ impl RunSet {
         &self.runs
     }
 
-    /// What was taken for granted, and every fault of every log; whole sentences.
+    /// What was taken for granted, and the faults of every log; whole sentences.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
-        let faults = self.runs.iter().flat_map(|run| run.log.faults());
-        self.notes.iter().cloned().chain(faults.map(ToString::to_string)).collect()
+        let faults = self.runs.iter().flat_map(|run| run.log.told_faults());
+        self.notes.iter().cloned().chain(faults).collect()
     }
 
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may

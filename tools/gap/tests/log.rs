@@ -167,10 +167,10 @@ fn lost_frames_are_counted_by_message() {
         .collect();
     let log = read(&kept).unwrap();
     assert_eq!(log.faults().len(), 1, "{:?}", log.faults());
-    let FaultKind::Dropped { message, gaps, frames, longest_s } = &log.faults()[0].kind else {
+    let FaultKind::Dropped { message, gaps, frames, due, longest_s } = &log.faults()[0].kind else {
         panic!("{:?}", log.faults());
     };
-    assert_eq!((message.as_str(), *gaps, *frames), ("PosMidRear", 2, 3));
+    assert_eq!((message.as_str(), *gaps, *frames, *due), ("PosMidRear", 2, 3, 100));
     assert!((longest_s - 0.03).abs() < 1e-9);
     assert!(!log.faults()[0].to_string().contains('\n'));
 }

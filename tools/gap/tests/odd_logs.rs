@@ -80,6 +80,81 @@ fn a_frame_that_is_padded_is_read_and_said() {
     assert!(fault.to_string().starts_with(wanted), "{fault}");
 }
 
+/// The log with a counter in the arms' command, each frame `k` again where `again_us` says how much later.
+fn with_repeats(again_us: impl Fn(usize) -> Option<u32>) -> String {
+    let mut lines = String::new();
+    for (k, (us, frame)) in frames().into_iter().enumerate() {
+        let counted = format!("4027#555555555555{:X}2", us / 10_000 % 15);
+        let frame = frame.replace("4027#55555555555512", &counted);
+        lines += &line(us, "can0", &frame);
+        lines += &again_us(k).map_or_else(String::new, |later| line(us + later, "can0", &frame));
+    }
+    lines
+}
+
+/// The database with that counter.
+fn counted() -> String {
+    let mode = " SG_ Mode : 48|4@1+ (1,0) [0|0] \"\" SMS\n";
+    DBC.replacen(mode, &format!("{mode} SG_ Counter : 52|4@1+ (1,0) [0|0] \"\" SMS\n"), 1)
+}
+
+fn read_counted(text: &str) -> FieldLog {
+    FieldLog::read(text.as_bytes(), "a.log", &decode(&counted()).unwrap(), false).unwrap()
+}
+
+#[test]
+fn frames_that_are_there_twice_are_left_out_once_and_told_in_one_line() {
+    let sound = read_counted(&with_repeats(|_| None));
+    assert_eq!(sound.faults(), []);
+    // Whichever message it is, a little later; the arms' command, as its counter tells, much later too.
+    for again_us in [0, 3, 300, 2_000, 7_000] {
+        let is_seen = |k: usize| k.is_multiple_of(9) || again_us < 2_500;
+        let repeats =
+            |k: usize| (k >= 27 && k.is_multiple_of(20) && is_seen(k)).then_some(again_us);
+        let log = read_counted(&with_repeats(repeats));
+        assert_eq!(log.all_series(), sound.all_series(), "{again_us} us later");
+        let count = |is: fn(usize) -> bool| {
+            (0..900).filter(|&k| is(k) && repeats(k).is_some()).count() as u64
+        };
+        let of_arms = log.faults().iter().find_map(|fault| match &fault.kind {
+            FaultKind::Repeated { message, frames, of } if message == "ArmTarget" => {
+                Some((*frames, *of))
+            }
+            FaultKind::Repeated { .. } => None,
+            _ => panic!("{fault}"),
+        });
+        let arms = count(|k| k.is_multiple_of(9));
+        assert_eq!(of_arms, Some((arms, 100 + arms)), "{again_us} us later");
+        let [told] = &log.told_faults()[..] else { panic!("{:?}", log.told_faults()) };
+        let all = count(|_| true);
+        assert!(told.contains(&format!("{all} of ")) && told.contains("twice"), "{told}");
+    }
+}
+
+#[test]
+fn what_a_logger_writes_two_at_a_time_is_not_there_twice() {
+    let two_at_a_time = |us: u32| us / 20_000 * 20_000 + us % 10_000;
+    let text: String =
+        frames().iter().map(|(us, frame)| line(two_at_a_time(*us), "can0", frame)).collect();
+    let log = read(&text).unwrap();
+    let is_repeat = |fault: &&xt28_gap::LogFault| matches!(fault.kind, FaultKind::Repeated { .. });
+    assert_eq!(log.faults().iter().find(is_repeat), None);
+    assert_eq!(log.series(Channel::Roll).unwrap().len(), 100);
+}
+
+#[test]
+fn frames_lost_of_many_messages_are_told_in_one_line() {
+    let kept =
+        frames().into_iter().enumerate().filter(|(k, _)| k % 10 != 7 || !(9..880).contains(k));
+    let text: String = kept.map(|(_, (us, frame))| line(us, "can0", frame)).collect();
+    let log = read(&text).unwrap();
+    assert_eq!(log.faults().len(), 9);
+    let [told] = &log.told_faults()[..] else { panic!("{:?}", log.told_faults()) };
+    let wanted =
+        "a.log:26: from here on 87 of 900 frames (9.7 %) of 9 messages are missing, the most of ";
+    assert!(told.starts_with(wanted) && told.contains("the longest gap is 20.0 ms"), "{told}");
+}
+
 /// Frames of other kinds, as candump writes them: error, remote, CAN FD.
 const OTHERS: [&str; 3] = ["20000004#0004000000000000", "123#R8", "18FE1026##12A002B00"];
 

@@ -59,6 +59,11 @@ impl Tap {
         (period_ms > 0).then(|| Duration::from_millis(period_ms))
     }
 
+    /// Whether its frames carry an alive counter, so that no two in a row are the same.
+    pub(crate) fn counts(&self) -> bool {
+        self.message.alive || self.message.signal("Counter").is_some()
+    }
+
     /// Channels it carries.
     pub(crate) fn channels(&self) -> impl Iterator<Item = Channel> {
         self.readings.iter().map(|reading| reading.channel)

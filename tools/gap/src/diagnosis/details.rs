@@ -85,11 +85,7 @@ impl Details {
             horizons: horizons::curves(&pairs),
             traces: traces::traces(inquiry, &pairs),
             has_after: !overlay.entries.is_empty(),
-            faults: inquiry
-                .runs
-                .iter()
-                .flat_map(|run| run.log.faults().iter().map(ToString::to_string))
-                .collect(),
+            faults: inquiry.runs.iter().flat_map(|run| run.log.told_faults()).collect(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How well a message of a log keeps its period and its form.
+//! How well a message of a log keeps its period and its form, and which of its frames are there twice.
 
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
@@ -9,11 +9,19 @@ use crate::decoder::{Tap, Unread};
 /// A frame this many periods after the last of its kind came after a gap. Below two, so that one lost
 /// frame is seen; above one, so that jitter is not.
 const GAP_PERIODS: f64 = 1.5;
+/// A frame that repeats the one before, alive counter and all, within this share of the period was
+/// logged twice: the sender would have counted on.
+const SAME_COUNT_PERIODS: f64 = 0.75;
+/// The same without a counter, where a reading may well be the same twice in a row.
+const SAME_READING_PERIODS: f64 = 0.25;
 
 /// What is known of one message so far.
 #[derive(Default)]
 pub(super) struct Attendance {
-    last: Option<SimTime>,
+    last: Option<Heard>,
+    frames: u64,
+    repeats: u64,
+    repeat_line: u64,
     gaps: u64,
     lost: u64,
     longest_s: f64,
@@ -23,7 +31,42 @@ pub(super) struct Attendance {
     spoiled: Option<(u64, f64, u64)>,
 }
 
+/// The latest frame that was no repeat.
+struct Heard {
+    at: SimTime,
+    frame: Frame,
+    /// When the one before it came.
+    before: Option<SimTime>,
+    /// Whether the one before it said something else, as a counter that counts does.
+    is_news: bool,
+}
+
 impl Attendance {
+    /// Whether the frame that came `at` is the one before once more, which it then notes.
+    ///
+    /// Nobody sends three frames in the time of one and a half, so without a counter that counts the
+    /// repeat must be one too many: a logger that writes frames late, two at a time, repeats none.
+    pub(super) fn is_repeat(&mut self, tap: &Tap, at: SimTime, line: u64, frame: &Frame) -> bool {
+        let (Some(last), Some(period)) = (&self.last, tap.period()) else { return false };
+        if last.frame.data() != frame.data() {
+            return false;
+        }
+        let periods = |since: SimTime| (at - since).as_secs_f64() / period.as_secs_f64();
+        let is_repeat = if tap.counts() && last.is_news {
+            periods(last.at) < SAME_COUNT_PERIODS
+        } else {
+            periods(last.at) < SAME_READING_PERIODS
+                && last.before.is_some_and(|before| periods(before) < GAP_PERIODS)
+        };
+        if is_repeat {
+            if self.repeats == 0 {
+                self.repeat_line = line;
+            }
+            self.repeats += 1;
+        }
+        is_repeat
+    }
+
     /// Notes a frame, which came `at`, `at_s` s after the first of the log.
     pub(super) fn note(&mut self, tap: &Tap, at: SimTime, at_s: f64, line: u64, frame: &Frame) {
         let found = frame.data().len();
@@ -33,8 +76,10 @@ impl Attendance {
             None if found > tap.bytes() => self.long.get_or_insert((line, found, 0)).2 += 1,
             None => {}
         }
-        if let (Some(last), Some(period)) = (self.last, tap.period()) {
-            let away_s = (at - last).as_secs_f64();
+        self.frames += 1;
+        let before = self.last.as_ref().map(|last| last.at);
+        if let (Some(before), Some(period)) = (before, tap.period()) {
+            let away_s = (at - before).as_secs_f64();
             let periods = away_s / period.as_secs_f64();
             if periods > GAP_PERIODS {
                 if self.gaps == 0 {
@@ -49,14 +94,21 @@ impl Attendance {
                 self.longest_s = self.longest_s.max(away_s);
             }
         }
-        self.last = Some(at);
+        let is_news = self.last.as_ref().is_some_and(|last| last.frame.data() != frame.data());
+        self.last = Some(Heard { at, frame: *frame, before, is_news });
     }
 
     pub(super) fn faults(&self, tap: &Tap) -> impl Iterator<Item = (u64, FaultKind)> {
         let message = || tap.name().to_owned();
         let dropped = (self.gaps > 0).then(|| {
             let (gaps, frames, longest_s) = (self.gaps, self.lost, self.longest_s);
-            (self.gap_line, FaultKind::Dropped { message: message(), gaps, frames, longest_s })
+            let due = self.frames + self.lost;
+            let message = message();
+            (self.gap_line, FaultKind::Dropped { message, gaps, frames, due, longest_s })
+        });
+        let repeated = (self.repeats > 0).then(|| {
+            let (frames, of) = (self.repeats, self.frames + self.repeats);
+            (self.repeat_line, FaultKind::Repeated { message: message(), frames, of })
         });
         let wanted = tap.bytes();
         let short = self.short.map(|(line, found, frames)| {
@@ -68,6 +120,6 @@ impl Attendance {
         let spoiled = self.spoiled.map(|(line, at_s, frames)| {
             (line, FaultKind::BadCrc { message: message(), at_s, frames })
         });
-        [dropped, short, long, spoiled].into_iter().flatten()
+        [dropped, repeated, short, long, spoiled].into_iter().flatten()
     }
 }

@@ -97,7 +97,11 @@ impl Intake {
         };
         self.known_frames += 1;
         let at_s = (at - first).as_secs_f64();
-        self.messages.entry(frame.id()).or_default().note(tap, at, at_s, line, frame);
+        let attendance = self.messages.entry(frame.id()).or_default();
+        if attendance.is_repeat(tap, at, line, frame) {
+            return;
+        }
+        attendance.note(tap, at, at_s, line, frame);
         for (channel, value) in tap.values(frame) {
             match value {
                 Ok(value) => {

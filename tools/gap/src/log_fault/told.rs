@@ -1,0 +1,137 @@
+//! Faults of a log as people are told of them: what befell many messages at once is one line.
+
+use super::{FaultKind, LogFault};
+
+/// Faults of one log, a line each; lost frames of several messages share one line, and so do repeated
+/// ones. It stands where the first of them stood.
+pub(crate) fn told(faults: &[LogFault]) -> Vec<String> {
+    let [mut lost, mut repeated] =
+        [Tally::of(faults, Mishap::Lost), Tally::of(faults, Mishap::Repeated)];
+    let mut lines = Vec::new();
+    for fault in faults {
+        let tally = match Mishap::of(fault) {
+            Some((Mishap::Lost, ..)) => &mut lost,
+            Some((Mishap::Repeated, ..)) => &mut repeated,
+            None => {
+                lines.push(fault.to_string());
+                continue;
+            }
+        };
+        lines.extend(tally.take().map(|tally| tally.line(fault)));
+    }
+    lines
+}
+
+/// What befalls all messages of a bus alike.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mishap {
+    Lost,
+    Repeated,
+}
+
+impl Mishap {
+    /// What befell which message: how many of its frames, and of how many.
+    fn of(fault: &LogFault) -> Option<(Self, &str, u64, u64)> {
+        match &fault.kind {
+            FaultKind::Dropped { message, frames, due, .. } => {
+                Some((Self::Lost, message, *frames, *due))
+            }
+            FaultKind::Repeated { message, frames, of } => {
+                Some((Self::Repeated, message, *frames, *of))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// One mishap over all messages of a log.
+struct Tally<'a> {
+    mishap: Mishap,
+    messages: usize,
+    frames: u64,
+    of: u64,
+    /// The message with the most frames: its name, how many, and of how many.
+    worst: (&'a str, u64, u64),
+    longest_s: f64,
+}
+
+impl<'a> Tally<'a> {
+    /// `None` where no message has it.
+    fn of(faults: &'a [LogFault], mishap: Mishap) -> Option<Self> {
+        let mut tally =
+            Self { mishap, messages: 0, frames: 0, of: 0, worst: ("", 0, 0), longest_s: 0.0 };
+        for fault in faults {
+            let Some((found, message, frames, of)) = Mishap::of(fault) else { continue };
+            if found != mishap {
+                continue;
+            }
+            tally.messages += 1;
+            tally.frames += frames;
+            tally.of += of;
+            if frames > tally.worst.1 {
+                tally.worst = (message, frames, of);
+            }
+            if let FaultKind::Dropped { longest_s, .. } = fault.kind {
+                tally.longest_s = tally.longest_s.max(longest_s);
+            }
+        }
+        (tally.messages > 0).then_some(tally)
+    }
+
+    /// What is told in place of `first` and all that are like it.
+    #[allow(clippy::cast_precision_loss)]
+    fn line(&self, first: &LogFault) -> String {
+        if self.messages == 1 {
+            return first.to_string();
+        }
+        let Self { messages, frames, of, worst: (worst, of_worst, worst_of), longest_s, .. } = self;
+        let percent = 100.0 * *frames as f64 / *of as f64;
+        let (some, most) = (
+            format!("from here on {frames} of {of} frames ({percent:.1} %) of {messages} messages"),
+            format!("the most of {worst} ({of_worst} of {worst_of})"),
+        );
+        let place = format!("{}:{}", first.log, first.line);
+        match self.mishap {
+            Mishap::Lost => format!(
+                "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held",
+                longest_s * 1e3
+            ),
+            Mishap::Repeated => format!(
+                "{place}: {some} are there twice, {most}; the repeats are left out, so check how the log was merged"
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(line: u64, kind: FaultKind) -> LogFault {
+        LogFault { log: "a.log".into(), line, kind }
+    }
+
+    fn dropped(message: &str, frames: u64) -> FaultKind {
+        let message = message.to_owned();
+        FaultKind::Dropped { message, gaps: frames, frames, due: 100, longest_s: 0.02 }
+    }
+
+    #[test]
+    fn what_befell_many_messages_is_one_line_where_the_first_stood() {
+        let faults = [
+            fault(2, FaultKind::Trailing),
+            fault(3, dropped("A", 5)),
+            fault(4, dropped("B", 9)),
+            fault(5, FaultKind::Repeated { message: "A".to_owned(), frames: 7, of: 70 }),
+            fault(6, dropped("C", 4)),
+            fault(7, FaultKind::Cut),
+        ];
+        let lines = told(&faults);
+        assert_eq!(lines.len(), 4, "{lines:?}");
+        assert_eq!((&lines[0], &lines[3]), (&faults[0].to_string(), &faults[5].to_string()));
+        let wanted = "a.log:3: from here on 18 of 300 frames (6.0 %) of 3 messages are missing, \
+                      the most of B (9 of 100); the longest gap is 20.0 ms";
+        assert!(lines[1].starts_with(wanted), "{}", lines[1]);
+        assert_eq!(lines[2], faults[3].to_string(), "what befell one message is told as it is");
+    }
+}

@@ -4,6 +4,7 @@ mod attendance;
 mod gzip;
 mod intake;
 mod order;
+mod stillness;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -15,8 +16,8 @@ use std::sync::Arc;
 
 use xt28_bus::candump::Reader;
 
-use crate::recorded::{self, MAGIC};
 use crate::log_fault::told;
+use crate::recorded::{self, MAGIC};
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
 use gzip::{Failed, Gzip};
 use intake::Intake;
@@ -171,13 +172,13 @@ impl FieldLog {
         &self.faults
     }
 
-    /// Frames read, of any message.
     /// The same for people, a line each: what befell many messages alike is one line.
     #[must_use]
     pub fn told_faults(&self) -> Vec<String> {
         told(&self.faults)
     }
 
+    /// Frames read, of any message.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames

@@ -118,6 +118,23 @@ pub enum FaultKind {
         /// CAN FD frames.
         fd: u64,
     },
+    /// A reading stood perfectly still while its part moved.
+    Frozen {
+        /// Channel.
+        channel: String,
+        /// What it read, in `unit`.
+        value: f64,
+        /// Its SI unit.
+        unit: &'static str,
+        /// When it stopped, s from the log's first frame.
+        from_s: f64,
+        /// When it last read so.
+        to_s: f64,
+        /// What says that its part moved.
+        meanwhile: String,
+        /// How often it stood so; this is the longest.
+        times: u64,
+    },
     /// A value is not a number, or is outside the range that the DBC gives; it is left out.
     Unbelievable {
         /// Channel.
@@ -184,6 +201,10 @@ impl fmt::Display for LogFault {
                 "{message} is missing {frames} frames in {gaps} gaps from here on, the longest {:.1} ms; the value before is held",
                 longest_s * 1e3
             ),
+            FaultKind::Repeated { message, frames, of } => write!(
+                f,
+                "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"
+            ),
             FaultKind::WrongLength { message, found, wanted, frames } => write!(
                 f,
                 "{message} has {found} bytes where the DBC says {wanted}; {frames} such frames are left out, so check that log and DBC belong together"
@@ -201,11 +222,18 @@ impl fmt::Display for LogFault {
                 let there = kinds.iter().filter(|(frames, _)| **frames > 0);
                 let each: Vec<String> =
                     there.map(|(n, kind)| format!("{n} {kind} frames")).collect();
-            FaultKind::Repeated { message, frames, of } => write!(
-                f,
-                "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"
-            ),
                 write!(f, "from here on {}; nothing is read from them", each.join(", "))
+            }
+            FaultKind::Frozen { channel, value, unit, from_s, to_s, meanwhile, times } => {
+                let again = if *times > 1 {
+                    format!(" (the longest of {times} times)")
+                } else {
+                    String::new()
+                };
+                write!(
+                    f,
+                    "reading {channel} stood still at {value:.3} {unit} from {from_s:.1} s to {to_s:.1} s{again} while {meanwhile}; it is taken as it is, so cut the log there if the sensor froze"
+                )
             }
             FaultKind::Unbelievable { channel, problem, values } => write!(
                 f,

@@ -12,6 +12,7 @@ use xt28_machine::SimTime;
 use super::FieldLog;
 use super::attendance::Attendance;
 use super::order::{Order, Place};
+use super::stillness::Stillness;
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
 
 /// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
@@ -35,6 +36,7 @@ pub(super) struct Intake {
     back: Option<Stretch>,
     ahead: Option<Stretch>,
     messages: BTreeMap<CanId, Attendance>,
+    stillness: Stillness,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
     line: u64,
     faults: Vec<(u64, FaultKind)>,
@@ -105,6 +107,7 @@ impl Intake {
         for (channel, value) in tap.values(frame) {
             match value {
                 Ok(value) => {
+                    self.stillness.note(channel, line, at_s, value);
                     self.series.entry(channel).or_default().push(at_s, value);
                 }
                 Err(error) => self.refused.entry(channel).or_insert((line, error, 0)).2 += 1,
@@ -189,6 +192,7 @@ impl Intake {
             let (channel, problem) = (channel.to_string(), error.to_string());
             kinds.push((*line, FaultKind::Unbelievable { channel, problem, values: *values }));
         }
+        kinds.extend(self.stillness.faults(&self.series));
         kinds
     }
 }

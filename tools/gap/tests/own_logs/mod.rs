@@ -1,4 +1,5 @@
 //! Logs of our own machine with effects put in, written as frames and read as any log is.
+#![allow(dead_code)] // each test uses a part
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -54,6 +55,14 @@ fn told(manoeuvre: &str, tick: u64) -> [Frame; 2] {
 
 /// One run of the machine with these effects, on level ground, without noise.
 pub(crate) fn run(manoeuvre: &str, effects: &Effects, fit: bool) -> FieldRun {
+    let text = text(manoeuvre, effects);
+    let decoder = Decoder::parse(XT28_DBC, Path::new("xt28.dbc"), &Mapping::default()).unwrap();
+    let log = FieldLog::read(text.as_bytes(), manoeuvre, &decoder, false).unwrap();
+    FieldRun::new(log, Terrain::Flat, fit).unwrap()
+}
+
+/// The log of such a run, as candump writes it, from 1 s on.
+pub(crate) fn text(manoeuvre: &str, effects: &Effects) -> String {
     let config = EmulatorConfig {
         effects: effects.clone(),
         solver: Solver::Reduced,
@@ -91,7 +100,5 @@ pub(crate) fn run(manoeuvre: &str, effects: &Effects, fit: bool) -> FieldRun {
             log(0.002, &said.encode().unwrap());
         }
     }
-    let decoder = Decoder::parse(XT28_DBC, Path::new("xt28.dbc"), &Mapping::default()).unwrap();
-    let log = FieldLog::read(text.as_bytes(), manoeuvre, &decoder, false).unwrap();
-    FieldRun::new(log, Terrain::Flat, fit).unwrap()
+    text
 }

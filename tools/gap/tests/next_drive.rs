@@ -69,6 +69,7 @@ fn diagnosis(causes: Vec<Cause>) -> Diagnosis {
         next: None,
         not_testable: Vec::new(),
         notes: Vec::new(),
+        log_faults: Vec::new(),
         seconds: 0.0,
     }
 }

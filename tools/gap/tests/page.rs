@@ -103,6 +103,7 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
             manoeuvre: "s-turn".to_owned(),
         }],
         notes: vec![HOSTILE.to_owned()],
+        log_faults: Vec::new(),
         seconds: 41.2,
     }
 }
@@ -315,6 +316,16 @@ fn what_is_all_but_ruled_out_is_told_from_nothing() {
     let likely = serde_json::to_value(diagnosis(Verdict::Effect)).unwrap();
     assert_eq!(likely["causes"][0]["class"], serde_json::json!(["arm-delay", "valve-lag"]));
     assert_eq!(likely["share_of"], "machine");
+}
+
+#[test]
+fn json_has_every_key_whatever_there_is_to_say() {
+    let mut sound = diagnosis(Verdict::None);
+    (sound.next, sound.together) = (None, None);
+    let json = serde_json::to_value(&sound).unwrap();
+    for key in ["next", "together"] {
+        assert_eq!(json.get(key), Some(&serde_json::Value::Null), "{key}");
+    }
 }
 
 #[test]

@@ -111,12 +111,19 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         next: None,
         not_testable: not_testable(runs, &inquiry.machine, &inquiry.catalogue),
         notes: notes(inquiry, findings, verdict),
+        log_faults: log_faults(inquiry),
         seconds: 0.0,
     };
     // What is stood by has been tested.
     let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();
     diagnosis.not_testable.retain(|one| !stood.contains(&one.effect));
     diagnosis
+}
+
+/// Every fault of every log.
+fn log_faults(inquiry: &Inquiry) -> Vec<String> {
+    let faults = inquiry.runs.iter().flat_map(|run| run.log.faults());
+    faults.map(ToString::to_string).collect()
 }
 
 /// File names of the runs that were not fitted.

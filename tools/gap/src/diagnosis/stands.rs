@@ -70,6 +70,7 @@ mod tests {
             next: None,
             not_testable: Vec::new(),
             notes: Vec::new(),
+            log_faults: Vec::new(),
             seconds: 0.0,
         }
     }

@@ -23,20 +23,20 @@ pub struct Diagnosis {
     pub probability_none: f64,
     /// Probability that what is wrong is not in the catalogue.
     pub probability_unknown: f64,
-    /// All causes stood by, at once.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// All causes stood by, at once; `null` in JSON without any.
     pub together: Option<Together>,
     /// Runs that were not fitted, by file name; none where all were.
     pub held_out_runs: Vec<String>,
     /// Whether the next test drive was looked for.
     pub looked_ahead: bool,
-    /// Manoeuvre that would tell the most.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Manoeuvre that would tell the most; `null` in JSON without one.
     pub next: Option<Next>,
     /// Effects that these logs cannot show, each with the manoeuvre that would.
     pub not_testable: Vec<NotTestable>,
     /// What was taken for granted, and what was odd about the logs; whole sentences.
     pub notes: Vec<String>,
+    /// What is wrong with the logs, message by message, where notes tell what befell many as one.
+    pub log_faults: Vec<String>,
     /// Wall time of the diagnosis, s; set by who holds the clock.
     pub seconds: f64,
 }

@@ -9,20 +9,28 @@
 //! ```
 
 use core::fmt::Write as _;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
+use toml::{Spanned, Value};
 
 use super::effect::{Effect, Parameter};
 use super::{Effects, Scope, find};
 
 /// A list of effects to add to a plant. Where two set the same number, the later one counts.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
     /// The effects, in the order of the file.
-    #[serde(default, rename = "effect")]
     pub entries: Vec<Entry>,
+}
+
+/// The file of an overlay, before anyone asked what its keys mean.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Draft {
+    #[serde(default)]
+    effect: Vec<Spanned<BTreeMap<String, Spanned<Value>>>>,
 }
 
 /// One effect of an overlay: a table that other files may hold as well.
@@ -78,12 +86,25 @@ impl Overlay {
     /// # Errors
     /// [`OverlayError::Parse`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, OverlayError> {
-        toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start.min(text.len()));
-            let line = text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1;
-            let problem = error.message().replace('\n', " ");
+        let refuse = |start: usize, problem: String| {
+            let before = &text.as_bytes()[..start.min(text.len())];
+            let line = before.iter().filter(|&&byte| byte == b'\n').count() + 1;
             OverlayError::Parse { path: path.to_owned(), line, problem }
-        })
+        };
+        let draft: Draft = toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start);
+            refuse(start, error.message().replace('\n', " "))
+        })?;
+        let entry = |draft: &Spanned<BTreeMap<String, Spanned<Value>>>| {
+            let table = draft.get_ref();
+            let values = table.iter().map(|(key, value)| (key.as_str(), value.get_ref()));
+            Entry::of(&values.collect()).map_err(|Refusal { key, problem }| {
+                let at_key = key.and_then(|key| table.get(&key)).map(|value| value.span().start);
+                refuse(at_key.unwrap_or(draft.span().start), problem)
+            })
+        };
+        let entries = draft.effect.iter().map(entry).collect::<Result<_, _>>()?;
+        Ok(Self { entries })
     }
 
     /// The values of all its effects, neutral elsewhere.
@@ -119,38 +140,58 @@ impl TryFrom<toml::Table> for Entry {
     type Error = String;
 
     fn try_from(table: toml::Table) -> Result<Self, String> {
-        let name = table.get("name").and_then(toml::Value::as_str);
-        let name = name.ok_or("an effect needs a name = \"...\"")?;
+        let values = table.iter().map(|(key, value)| (key.as_str(), value));
+        Self::of(&values.collect()).map_err(|refusal| refusal.problem)
+    }
+}
+
+/// What is wrong with an entry, and at which of its keys; `None` where one is missing.
+struct Refusal {
+    key: Option<String>,
+    problem: String,
+}
+
+impl Entry {
+    fn of(table: &BTreeMap<&str, &Value>) -> Result<Self, Refusal> {
+        let whole = |problem: String| Refusal { key: None, problem };
+        let at = |key: &str, problem: String| Refusal { key: Some(key.to_owned()), problem };
+        let name = table.get("name").and_then(|name| name.as_str());
+        let name = name.ok_or_else(|| whole("an effect needs a name = \"...\"".to_owned()))?;
         let effect = find(name).ok_or_else(|| {
             let names: Vec<&str> = super::CATALOGUE.iter().map(|effect| effect.name).collect();
-            format!("\"{name}\" is no effect; known are {}", names.join(", "))
+            at("name", format!("\"{name}\" is no effect; known are {}", names.join(", ")))
         })?;
         let mut entry = Self { effect, scope: Scope::All, severity: 1.0, values: Vec::new() };
-        for (key, value) in &table {
-            match key.as_str() {
+        let parameters = || effect.parameters.iter().map(|p| p.name).collect::<Vec<_>>().join(", ");
+        for (&key, &value) in table {
+            match key {
                 "name" => {}
-                "scope" => {
-                    let scope = value.as_str().ok_or("scope is a string, such as \"front\"")?;
-                    entry.scope = scope.parse().map_err(|error| format!("{error}"))?;
+                "scope" => entry.scope = scope(value).map_err(|problem| at(key, problem))?,
+                "severity" => {
+                    entry.severity =
+                        number(key, value, [0.0, 1.0]).map_err(|problem| at(key, problem))?;
                 }
-                "severity" => entry.severity = number(key, value, [0.0, 1.0])?,
                 _ => {
                     let parameter = effect.parameter(key).ok_or_else(|| {
-                        let names: Vec<&str> = effect.parameters.iter().map(|p| p.name).collect();
-                        format!("{name} has no {key}; it has {}", names.join(", "))
+                        at(key, format!("{name} has no {key}; it has {}", parameters()))
                     })?;
-                    entry.values.push((parameter, number(key, value, parameter.range)?));
+                    let number =
+                        number(key, value, parameter.range).map_err(|problem| at(key, problem))?;
+                    entry.values.push((parameter, number));
                 }
             }
         }
         if entry.scope != Scope::All && !effect.has_scope() {
-            return Err(format!("{name} acts on the whole machine; leave out the scope"));
+            let problem = format!("{name} acts on the whole machine; leave out the scope");
+            return Err(at("scope", problem));
+        }
+        if entry.values.is_empty() {
+            let problem = format!("{name} has no value here and would do nothing; it has");
+            return Err(whole(format!("{problem} {}", parameters())));
         }
         Ok(entry)
     }
-}
 
-impl Entry {
     /// Sets its parameters in `effects`.
     pub fn apply(&self, effects: &mut Effects) {
         for (parameter, value) in &self.values {
@@ -165,8 +206,13 @@ impl Entry {
     }
 }
 
+fn scope(value: &Value) -> Result<Scope, String> {
+    let scope = value.as_str().ok_or("scope is a string, such as \"front\"")?;
+    scope.parse().map_err(|error| format!("{error}"))
+}
+
 #[allow(clippy::cast_precision_loss)]
-fn number(key: &str, value: &toml::Value, [low, high]: [f64; 2]) -> Result<f64, String> {
+fn number(key: &str, value: &Value, [low, high]: [f64; 2]) -> Result<f64, String> {
     let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
     match number {
         Some(number) if (low..=high).contains(&number) => Ok(number),
@@ -209,15 +255,29 @@ mod tests {
 
     #[test]
     fn a_bad_overlay_says_line_and_remedy() {
+        const DELAY: &str = "[[effect]]\nname = \"arm-delay\"\n";
+        let twice = format!("{DELAY}delay_s = 0.1\n\n{DELAY}");
         for (text, says) in [
             (
                 "\n[[effect]]\nname = \"arm-delya\"",
-                "o.toml:2: \"arm-delya\" is no effect; known are",
+                "o.toml:3: \"arm-delya\" is no effect; known are",
             ),
             ("[[effect]]\nscope = \"all\"", "o.toml:1: an effect needs a name"),
-            ("[[effect]]\nname = \"arm-delay\"\ndelay_ms = 2", "arm-delay has no delay_ms; it has"),
-            ("[[effect]]\nname = \"arm-delay\"\ndelay_s = 7", "delay_s = 7 is outside 0 to 1"),
-            ("[[effect]]\nname = \"arm-delay\"\nscope = \"top\"", "\"top\" is no scope"),
+            (&format!("{DELAY}delay_ms = 2"), "o.toml:3: arm-delay has no delay_ms; it has"),
+            (&format!("{DELAY}delay_s = 7"), "o.toml:3: delay_s = 7 is outside 0 to 1"),
+            (&format!("{DELAY}scope = \"top\""), "o.toml:3: \"top\" is no scope"),
+            (
+                &format!("{twice}scope = \"front\"\nseverity = 2\n"),
+                "o.toml:8: severity = 2 is outside",
+            ),
+            (
+                &format!("{twice}scope = \"front\"\n"),
+                "o.toml:5: arm-delay has no value here and would do nothing; it has delay_s",
+            ),
+            (
+                "[[effect]]\nname = \"payload\"\nmass_kg = 10\nscope = \"front\"",
+                "o.toml:4: payload acts on the whole machine",
+            ),
             ("[[efect]]\n", "o.toml:1: unknown field"),
         ] {
             let error = parse(text).unwrap_err();

@@ -1,4 +1,6 @@
 //! The rigid parts of a foreign machine, from what is true of it.
+//!
+//! Tyres and the lean of the ground are parts of the bench's own solver, and so are the effects on them.
 
 use xt28_machine::{GRAVITY_M_S2, Wheel};
 use xt28_sim::{Effects, Part, Parts, Tilt};

@@ -3,7 +3,9 @@
 //! A [`Case`] is one machine drawn from a seed: its tolerances, what is wrong with it, and the logs of
 //! scripted test drives. Rigid bodies are the bench's; hydraulics, drive, steering, ECUs and sensors
 //! are written anew with other physics (chamber pressures, spools with mass, circuit pressure,
-//! another integrator), so that a diagnosis cannot find its own equations in the data.
+//! another integrator), so that a diagnosis cannot find its own equations in the data. Three effects are
+//! the exception, as they act through the bench's solver with its tyres and its tilt: `soft-tyres`,
+//! `slippery-ground` and `terrain-slope`. What is scored of these is flattered.
 //!
 //! | | |
 //! |---|---|

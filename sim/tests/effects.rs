@@ -46,10 +46,9 @@ fn far([low, high]: [f64; 2], neutral: f64) -> f64 {
     if high > neutral { high } else { low }
 }
 
-/// An overlay at severity zero is the nominal plant, bit for bit: each effect alone by its values,
-/// all at once by five seconds of the vehicle.
+/// An overlay at severity zero is the nominal machine, by its values and through its file.
 #[test]
-fn severity_zero_is_the_nominal_plant_to_the_bit() {
+fn severity_zero_leaves_every_value_nominal() {
     let all: Vec<_> = CATALOGUE.iter().collect();
     let each = CATALOGUE.iter().map(|effect| vec![effect]);
     for effects in each.chain([all.clone()]) {
@@ -57,10 +56,47 @@ fn severity_zero_is_the_nominal_plant_to_the_bit() {
         let read = Overlay::parse(&text, Path::new("o.toml")).unwrap();
         assert_eq!(read.effects(), Effects::default(), "{}", effects[0].name);
     }
-    let with = trace(&overlay(&all, 0.0).effects(), 1000);
-    for (step, (with, without)) in with.iter().zip(trace(&Effects::default(), 1000)).enumerate() {
-        assert_eq!(*with, without, "step {step}");
+}
+
+/// All effects but one in force by their slots, without an overlay: a tenth of the way to their far ends.
+fn all_but(left_out: &Effect) -> Effects {
+    let mut effects = Effects::default();
+    for p in CATALOGUE.iter().filter(|effect| *effect != left_out).flat_map(|e| e.parameters) {
+        p.set(&mut effects, Scope::All, p.neutral + 0.1 * (far(p.range, p.neutral) - p.neutral));
     }
+    effects
+}
+
+/// An effect that is listed at severity zero, before all others in force or after them, leaves the
+/// vehicle as the others alone have it, bit for bit: it puts nothing back to nominal that another one
+/// has set, and no law beside it takes another branch. Minus zero equals zero as a value, so that only
+/// driving tells.
+#[test]
+fn severity_zero_beside_all_others_leaves_them_to_the_bit() {
+    let bits = |effects: &Effects| -> Vec<Vec<u64>> {
+        let states = trace(effects, 60);
+        states.iter().map(|s| numbers(s).into_iter().map(f64::to_bits).collect()).collect()
+    };
+    let nominal = bits(&Effects::default());
+    for effect in CATALOGUE {
+        let others: Vec<&Effect> = CATALOGUE.iter().filter(|other| *other != effect).collect();
+        let (others, none) = (overlay(&others, 0.1), overlay(&[effect], 0.0));
+        let alone = bits(&all_but(effect));
+        assert_ne!(alone, nominal, "the others show");
+        for both in [[&none, &others], [&others, &none]] {
+            let listed = Overlay { entries: both.map(|o| o.entries.clone()).concat() };
+            let read = Overlay::parse(&listed.to_toml(), Path::new("o.toml")).unwrap();
+            assert!(bits(&read.effects()) == alone, "{} at severity zero shows", effect.name);
+        }
+    }
+}
+
+/// What every sensor and every wheel feels.
+fn numbers(s: &VehicleState) -> Vec<f64> {
+    let wheels = [s.stroke_m, s.cylinder_force_n, s.ground_force_n, s.wheel_speed_rad_s];
+    let wheels = wheels.iter().flat_map(|wheels| wheels.0);
+    let places = [s.position_m, s.antenna_position_m, s.antenna_velocity_m_s, s.front_rate_rad_s];
+    wheels.chain(places.concat()).chain(s.joint_rad).chain([s.roll_rad, s.pitch_rad]).collect()
 }
 
 /// No effect sets in with a jump: at a millionth of its range the vehicle moves within the solver's

@@ -9,7 +9,9 @@
 mod answer;
 mod black_box;
 mod course;
+mod folds;
 mod free_step;
+mod law;
 mod measured;
 mod one_step;
 mod reader;

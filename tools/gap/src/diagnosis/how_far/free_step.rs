@@ -1,120 +1,179 @@
 //! What a free model would reach a tenth of a second ahead: each block's error from what is measured
 //! and commanded at the same sample, by ridge regression.
 //!
-//! Fitted on the fit runs, block signal by block signal; each has the ridge that leaves least of a fit run
-//! that was left out, "no model" among the choices.
+//! Fitted on the fit runs, block signal by block signal; each has the ridge that leaves least of what is
+//! left out of the fit ([`folds`]), "no model" among the choices. It says less the further its inputs lie
+//! from those of the fit runs ([`Known`]), and never more than the largest error that was seen there.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::HowFar;
 use super::black_box::commands;
 use super::course::{Horizon, Quantity, WIDTH, floors};
+use super::folds::{self, Fold, RIDGES};
+use super::law::{Known, Law, Normal, scales};
 use super::one_step::{self, Ahead};
 use super::twin::Course;
 
-/// Ridges to choose from, in units of an input's mean square; the last leaves no model.
-const RIDGES: [f64; 6] = [1.0e-3, 1.0e-2, 0.1, 1.0, 10.0, f64::INFINITY];
+/// Errors and inputs of one run, sample by sample.
+struct Lesson {
+    run: usize,
+    ahead: Ahead,
+    inputs: Vec<DVector<f64>>,
+}
 
-/// Normal equations of one signal on one run.
-#[derive(Clone)]
-struct Normal {
-    matrix: DMatrix<f64>,
-    right: DVector<f64>,
-    squares: f64,
-    samples: f64,
+/// What is known with each of [`RIDGES`] of the samples that were not left out, and how far the others
+/// can be trusted.
+struct Trusts {
+    fold: Fold,
+    /// A ridge and a run each; one share a sample.
+    shares: Vec<Vec<Vec<f64>>>,
+}
+
+/// One signal's error, fitted.
+struct Model {
+    law: Law,
+    ridge: usize,
+    reach: f64,
 }
 
 impl HowFar {
     /// What a free model leaves of the blocks' errors on the judged runs.
     pub(super) fn free_steps(&self) -> Vec<Ahead> {
-        let of = |course: &Course| {
+        let of = |(run, course): (usize, &Course)| {
             let ahead = one_step::ahead(&course.signals, &self.machine, &self.believed);
-            (ahead, inputs(course))
+            Lesson { run, ahead, inputs: inputs(course) }
         };
-        let runs: Vec<(Ahead, Vec<DVector<f64>>)> = self.courses.par_iter().map(of).collect();
-        let fitted: Vec<usize> = (0..runs.len()).filter(|&k| self.fits(k)).collect();
-        let signals = runs.first().map_or(0, |(ahead, _)| ahead.len());
-        let weights: Vec<Option<DVector<f64>>> = (0..signals)
-            .into_par_iter()
-            .map(|j| {
-                let normal = |&k: &usize| Normal::of(&runs[k].0[j].1, &runs[k].1);
-                let normals: Vec<Normal> = fitted.iter().map(normal).collect();
-                let tried = RIDGES.map(|ridge| (left_out(&normals, ridge), ridge));
-                let best = tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-                total(normals.iter())?.solve(best.1)
-            })
-            .collect();
-        let judged = runs.into_iter().enumerate().filter(|(k, _)| self.judges(*k));
-        let after = |(_, (mut ahead, inputs)): (usize, (Ahead, Vec<DVector<f64>>))| {
-            for ((_, errors), weights) in ahead.iter_mut().zip(&weights) {
-                let Some(weights) = weights else { continue };
-                errors.iter_mut().zip(&inputs).for_each(|(error, z)| *error -= weights.dot(z));
+        let lessons: Vec<Lesson> = self.courses.par_iter().enumerate().map(of).collect();
+        left(lessons, |run| self.fits(run), |run| self.judges(run))
+    }
+}
+
+/// What is left of the errors of judged lessons once a model of the fitted ones is taken off.
+fn left(
+    mut lessons: Vec<Lesson>,
+    fits: impl Fn(usize) -> bool,
+    judges: impl Fn(usize) -> bool,
+) -> Vec<Ahead> {
+    let fitted = lessons.iter().filter(|lesson| fits(lesson.run));
+    let scale = scales(fitted.flat_map(|lesson| &lesson.inputs));
+    for inputs in lessons.iter_mut().flat_map(|lesson| &mut lesson.inputs) {
+        inputs.component_div_assign(&scale);
+    }
+    let fitted: Vec<&Lesson> = lessons.iter().filter(|lesson| fits(lesson.run)).collect();
+    let signals = fitted.first().map_or(0, |lesson| lesson.ahead.len());
+    let runs: Vec<(usize, usize)> = fitted.iter().map(|l| (l.run, l.inputs.len())).collect();
+    let trusts: Vec<Trusts> =
+        folds::folds(&runs).into_par_iter().map(|fold| Trusts::of(fold, &fitted)).collect();
+    let models: Vec<Option<Model>> =
+        (0..signals).into_par_iter().map(|j| Model::of(j, &fitted, &trusts)).collect();
+    let known = RIDGES.map(|ridge| known(&fitted, ridge, |_, _| true));
+    let judged = lessons.iter().filter(|lesson| judges(lesson.run));
+    let after = |lesson: &Lesson| {
+        let mut ahead = lesson.ahead.clone();
+        for ((_, errors), model) in ahead.iter_mut().zip(&models) {
+            let Some((model, known)) =
+                model.as_ref().and_then(|m| Some((m, known[m.ridge].as_ref()?)))
+            else {
+                continue;
+            };
+            for (error, z) in errors.iter_mut().zip(&lesson.inputs) {
+                *error -= model.says(z, known.trust(z));
             }
-            ahead
-        };
-        judged.map(after).collect()
-    }
-}
-
-/// Squares left on each run by the model of the others, per sample.
-fn left_out(runs: &[Normal], ridge: f64) -> f64 {
-    let one = |k: usize| {
-        let others = runs.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, run)| run);
-        let weights = total(others).and_then(|all| all.solve(ridge));
-        runs[k].left(weights.as_ref()) / runs[k].samples.max(1.0)
+        }
+        ahead
     };
-    (0..runs.len()).map(one).sum()
+    judged.map(after).collect()
 }
 
-fn total<'a>(mut runs: impl Iterator<Item = &'a Normal>) -> Option<Normal> {
-    let mut all = runs.next()?.clone();
-    for run in runs {
-        all.matrix += &run.matrix;
-        all.right += &run.right;
-        all.squares += run.squares;
-        all.samples += run.samples;
-    }
-    Some(all)
+/// What is known of the samples that are fitted.
+fn known(
+    lessons: &[&Lesson],
+    ridge: f64,
+    is_fitted: impl Fn(usize, usize) -> bool,
+) -> Option<Known> {
+    let of = |lesson: &&'_ Lesson| {
+        let run = lesson.run;
+        (0..lesson.inputs.len()).filter(|&k| is_fitted(run, k)).collect::<Vec<_>>()
+    };
+    let chosen: Vec<&DVector<f64>> =
+        lessons.iter().flat_map(|l| of(l).into_iter().map(|k| &l.inputs[k])).collect();
+    let mut normal = Normal::new(chosen.first()?.len(), 0);
+    chosen.iter().for_each(|z| normal.add(z, &DVector::zeros(0)));
+    normal.known(ridge, chosen.into_iter())
 }
 
-impl Normal {
-    fn of(errors: &[f64], inputs: &[DVector<f64>]) -> Self {
-        let n = inputs.first().map_or(0, DVector::len);
-        let mut normal = Self {
-            matrix: DMatrix::zeros(n, n),
-            right: DVector::zeros(n),
-            squares: 0.0,
-            samples: 0.0,
+impl Trusts {
+    fn of(fold: Fold, lessons: &[&Lesson]) -> Self {
+        let of = |ridge: f64| -> Vec<Vec<f64>> {
+            let known = known(lessons, ridge, |run, k| fold.fits(run, k));
+            let share = |lesson: &Lesson, k: usize| match &known {
+                Some(known) if fold.judges(lesson.run, k) => known.trust(&lesson.inputs[k]),
+                _ => 0.0,
+            };
+            lessons.iter().map(|l| (0..l.inputs.len()).map(|k| share(l, k)).collect()).collect()
         };
-        for (error, z) in errors.iter().zip(inputs).filter(|(error, _)| error.is_finite()) {
-            normal.matrix.ger(1.0, z, z, 1.0);
-            normal.right.axpy(*error, z, 1.0);
-            normal.squares += error * error;
-            normal.samples += 1.0;
-        }
-        normal
+        Self { fold, shares: RIDGES.map(of).into() }
+    }
+}
+
+impl Model {
+    /// The model of signal `j`; none where none leaves as little.
+    fn of(j: usize, lessons: &[&Lesson], trusts: &[Trusts]) -> Option<Self> {
+        let left = |trusts: &Trusts| {
+            let (normal, reach) = normal(j, lessons, |run, k| trusts.fold.fits(run, k));
+            let of = |ridge: usize| {
+                let model = normal.law(RIDGES[ridge]).map(|law| Self { law, ridge, reach });
+                let (mut sum, mut count) = (0.0, 0.0);
+                for (lesson, trust) in lessons.iter().zip(&trusts.shares[ridge]) {
+                    for (k, error, z) in samples(j, lesson) {
+                        if trusts.fold.judges(lesson.run, k) {
+                            let said = model.as_ref().map_or(0.0, |model| model.says(z, trust[k]));
+                            sum += (error - said).powi(2);
+                            count += 1.0;
+                        }
+                    }
+                }
+                (sum / f64::max(count, 1.0)).sqrt()
+            };
+            core::array::from_fn(of)
+        };
+        let by_fold: Vec<[f64; RIDGES.len()]> = trusts.iter().map(left).collect();
+        let by_ridge: Vec<Vec<f64>> =
+            (0..RIDGES.len()).map(|k| by_fold.iter().map(|left| left[k]).collect()).collect();
+        let chosen = folds::choose(&by_ridge);
+        let ridge = RIDGES.iter().position(|ridge| ridge.total_cmp(&chosen).is_eq())?;
+        let (normal, reach) = normal(j, lessons, |_, _| true);
+        Some(Self { law: normal.law(chosen)?, ridge, reach })
     }
 
-    /// Weights with a ridge as large as that share of each input's mean square.
-    fn solve(&self, ridge: f64) -> Option<DVector<f64>> {
-        if ridge.is_infinite() || self.samples == 0.0 {
-            return None;
-        }
-        let mut matrix = self.matrix.clone();
-        for k in 0..matrix.nrows() {
-            let own = matrix[(k, k)];
-            matrix[(k, k)] += ridge * own + 1.0e-9 * self.samples;
-        }
-        Some(Cholesky::new(matrix)?.solve(&self.right))
+    fn says(&self, inputs: &DVector<f64>, trust: f64) -> f64 {
+        (trust * self.law.of(inputs)[0]).clamp(-self.reach, self.reach)
     }
+}
 
-    /// Squares that these weights leave.
-    fn left(&self, weights: Option<&DVector<f64>>) -> f64 {
-        weights.map_or(self.squares, |w| {
-            (self.squares - 2.0 * w.dot(&self.right) + w.dot(&(&self.matrix * w))).max(0.0)
-        })
+/// Samples of signal `j` that can be judged: number, error, inputs.
+fn samples(j: usize, lesson: &Lesson) -> impl Iterator<Item = (usize, f64, &DVector<f64>)> {
+    let all = lesson.ahead[j].1.iter().zip(&lesson.inputs).enumerate();
+    all.filter(|(_, (error, _))| error.is_finite()).map(|(k, (error, z))| (k, *error, z))
+}
+
+/// Samples of signal `j` that are fitted, added up, and the largest error among them.
+fn normal(
+    j: usize,
+    lessons: &[&Lesson],
+    is_fitted: impl Fn(usize, usize) -> bool,
+) -> (Normal, f64) {
+    let inputs = lessons.iter().find_map(|lesson| lesson.inputs.first()).map_or(0, DVector::len);
+    let (mut normal, mut reach) = (Normal::new(inputs, 1), 0.0_f64);
+    for lesson in lessons {
+        for (_, error, z) in samples(j, lesson).filter(|(k, ..)| is_fitted(lesson.run, *k)) {
+            normal.add(z, &DVector::from_element(1, error));
+            reach = reach.max(error.abs());
+        }
     }
+    (normal, reach)
 }
 
 /// What is measured, how that changes and what is commanded, sample by sample, in floors.
@@ -132,3 +191,6 @@ fn inputs(course: &Course) -> Vec<DVector<f64>> {
     };
     (0..course.measured.len()).map(at).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,7 @@ use xt28_dbc::messages::{
 };
 use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
-use xt28_sim::effects::{CATALOGUE, Entry, Overlay, Scope};
+use xt28_sim::effects::{CATALOGUE, Effect, Entry, Overlay, Scope};
 use xt28_sim::{Effects, Terrain};
 
 /// The frames of 14 s: arms go from 170 to 220 mm at 1 s, the machine drives from 3 s on and turns
@@ -80,16 +80,25 @@ fn reaches(series: &[(f64, f64)], value: f64) -> f64 {
     series.iter().find(|(_, v)| *v >= value).expect("it comes to that").0
 }
 
+/// Every other effect in force, a tenth of the way, is the same with the rest of them listed at
+/// severity zero as without; no frame differs.
 #[test]
-fn every_effect_at_severity_zero_leaves_the_bus_as_it_was() {
-    let entries = CATALOGUE.iter().map(|effect| Entry {
+fn effects_at_severity_zero_leave_the_bus_as_the_others_have_it() {
+    let entry = |(k, effect): (usize, &'static Effect), severity: f64| Entry {
         effect,
         scope: Scope::All,
-        severity: 0.0,
+        severity: if k.is_multiple_of(2) { severity } else { 0.1 - severity },
         values: effect.parameters.iter().map(|p| (p, p.range[1])).collect(),
-    });
-    let overlay = Overlay { entries: entries.collect() };
-    assert!(bus(overlay.effects()) == bus(Effects::default()), "some frame differs");
+    };
+    let nominal = bus(Effects::default());
+    for severity in [0.0, 0.1] {
+        let all: Vec<Entry> =
+            CATALOGUE.iter().enumerate().map(|effect| entry(effect, severity)).collect();
+        let in_force = all.iter().filter(|entry| entry.severity > 0.0).cloned().collect();
+        let alone = bus(Overlay { entries: in_force }.effects());
+        assert!(alone != nominal, "effects in force show");
+        assert!(bus(Overlay { entries: all }.effects()) == alone, "some frame differs");
+    }
 }
 
 #[test]

@@ -3,9 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use xt28_gap::diagnosis::{
-    Belief, Direction, Evidence, Fit, Generator, Hypothesis, Knob, Regime, Signals, search,
-};
+use xt28_gap::diagnosis::{Belief, Evidence, Fit, Generator, Hypothesis, Knob, Signals, search};
 use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Series, Terrain};
 use xt28_machine::{Axle, Machine, Wheel};
 use xt28_sim::effects::{Effect, Overlay, Scope, find};
@@ -66,17 +64,6 @@ fn a_load_read_twenty_times_a_second_is_compared_when_it_is_read() {
         let stroke = rms(Generator::ArmStroke(wheel), &signals);
         assert!(stroke < 1.5, "{wheel}: {stroke}");
     }
-}
-
-#[test]
-fn every_residual_sample_has_a_regime() {
-    let Some(signals) = signals("run-1-arm_step.log.gz") else { return };
-    let regimes = Regime::of_run(&signals, &Machine::xt28(), Wheel::Fr);
-    assert_eq!(regimes.len(), signals.len / 10);
-    for direction in [Direction::Closed, Direction::Extending, Direction::Retracting] {
-        assert!(regimes.iter().any(|regime| regime.direction == direction), "{direction:?}");
-    }
-    assert!(regimes.iter().all(|regime| !regime.hangs), "front arms carry throughout");
 }
 
 /// Fits of `rivals` at every scope to our machine with `overlay` on the commands of a field log; best

@@ -5,6 +5,7 @@ mod made_up;
 use std::path::Path;
 
 use made_up::{signals, swinging};
+use xt28_gap::diagnosis::details::REGIMES;
 use xt28_gap::diagnosis::{
     Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Inquiry, Next, NotTestable, Place,
     ShareOf, Shrink, Spot, Together, Verdict,
@@ -132,6 +133,23 @@ fn who_decides_reads_how_large_it_is_and_who_mends_which_gap_has_which_share() {
         "{mends}"
     );
     assert!(mends.contains("next best: "), "{mends}");
+}
+
+#[test]
+fn a_gap_is_shown_in_the_regimes_that_there_were_and_in_no_other() {
+    let details = Details::new(&inquiry(), &diagnosis(Verdict::None));
+    let row = |name: &str| details.map.iter().find(|row| row.name == name).expect("a row");
+    let cell = |name: &str, regime: &str| {
+        let at = REGIMES.iter().position(|other| *other == regime).expect("a column");
+        row(name).cells[at]
+    };
+    for regime in ["extends", "retracts", "several arms", "stands"] {
+        assert!(cell("arm controller FR", regime).is_some(), "{regime}");
+    }
+    for regime in ["hangs free", "near an end", "in a bend"] {
+        assert_eq!(cell("arm controller FR", regime), None, "{regime}");
+    }
+    assert_eq!(cell("joint front", "extends"), None, "a joint is no arm");
 }
 
 /// Every tag of a page is closed, in order.

@@ -17,7 +17,7 @@ use super::inquiry::Inquiry;
 use super::verdict::Diagnosis;
 
 pub use horizons::{Curve, HORIZONS_S};
-pub use regimes::{REGIMES, Row};
+pub use regimes::{OF_ARM, REGIMES, Row};
 pub use traces::Trace;
 
 /// Time between two samples of a residual, s.

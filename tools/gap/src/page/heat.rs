@@ -3,13 +3,11 @@
 use super::colour::{BLANK, INK, of_gap};
 use super::svg::{Anchor, Svg};
 use crate::diagnosis::Details;
-use crate::diagnosis::details::REGIMES;
+use crate::diagnosis::details::{OF_ARM, REGIMES};
 
 const NAMES_PX: f64 = 150.0;
-const CELL: [f64; 2] = [58.0, 19.0];
+const CELL: [f64; 2] = [53.0, 19.0];
 const HEAD_PX: f64 = 46.0;
-/// Regimes of the row's own arm, before those of the machine.
-const OWN: usize = 4;
 
 /// The drawing: a row a block, a column a regime, and one for everything.
 #[allow(clippy::cast_precision_loss)]
@@ -20,11 +18,12 @@ pub(super) fn draw(details: &Details) -> String {
     let x_of = |column: usize| {
         NAMES_PX
             + CELL[0] * column as f64
-            + if column > OWN { 5.0 } else { 0.0 }
+            + if column > OF_ARM { 5.0 } else { 0.0 }
             + if column > 0 { 5.0 } else { 0.0 }
     };
-    svg.text([x_of(1) + 2.0 * CELL[0], 13.0], "this arm", Anchor::Middle, 10.5, INK);
-    svg.text([x_of(5) + 2.5 * CELL[0], 13.0], "the machine", Anchor::Middle, 10.5, INK);
+    let middle = |from: usize, to: usize| 0.5 * (x_of(from) + x_of(to) + CELL[0]);
+    svg.text([middle(1, OF_ARM), 13.0], "this arm", Anchor::Middle, 10.5, INK);
+    svg.text([middle(OF_ARM + 1, columns - 1), 13.0], "the machine", Anchor::Middle, 10.5, INK);
     for (column, name) in std::iter::once("all").chain(REGIMES).enumerate() {
         let middle = x_of(column) + CELL[0] / 2.0;
         for (word, line) in two_lines(name).into_iter().zip([28.0, 39.0]) {

@@ -6,13 +6,15 @@ use super::{Pair, STEP_S, rms, wheel_of};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{DT_S, Signals};
 
-/// What a machine may be doing, in the order of a row's cells. The first four are of the arm that the
-/// row is about; other rows have none there.
-pub const REGIMES: [&str; 9] = [
+/// Regimes of the arm that a row is about, the first of all; other rows have none there.
+pub const OF_ARM: usize = 5;
+/// What a machine may be doing, in the order of a row's cells.
+pub const REGIMES: [&str; 10] = [
     "valve shut",
     "extends",
     "retracts",
     "near an end",
+    "hangs free",
     "several arms",
     "stands",
     "changes speed",
@@ -24,6 +26,8 @@ pub const REGIMES: [&str; 9] = [
 const SHUT: f64 = 0.01;
 /// Closer than this to an end of its stroke an arm may meet it, m.
 const NEAR_END_M: f64 = 0.02;
+/// A cylinder that carries less has its wheel in the air, N (assumed).
+const UNLOADED_N: f64 = 5.0e3;
 /// Slower than this the machine stands, m/s.
 const STANDS_M_S: f64 = 0.05;
 /// A change of speed above this is not a steady drive, m/s2.
@@ -37,7 +41,7 @@ pub struct Row {
     /// The generator.
     pub name: String,
     /// Its gap in each of [`REGIMES`], floors; `None` where that did not happen or does not apply.
-    pub cells: [Option<f64>; 9],
+    pub cells: [Option<f64>; REGIMES.len()],
     /// Its gap over everything.
     pub all: Option<f64>,
 }
@@ -96,10 +100,11 @@ fn is(s: &Signals, machine: &Machine, wheel: Option<Wheel>, i: usize, regime: us
         1 => arm(&|w| s.opening[w][i] >= SHUT),
         2 => arm(&|w| s.opening[w][i] <= -SHUT),
         3 => arm(&|w| !ends.contains(&s.stroke_m[w][i])),
-        4 => s.opening.iter().filter(|(_, opening)| opening[i].abs() >= SHUT).count() > 1,
-        5 => stands && steady,
-        6 => !steady,
-        7 => !stands && steady && !bent,
+        4 => arm(&|w| s.cylinder_load_n[w][i] < UNLOADED_N),
+        5 => s.opening.iter().filter(|(_, opening)| opening[i].abs() >= SHUT).count() > 1,
+        6 => stands && steady,
+        7 => !steady,
+        8 => !stands && steady && !bent,
         _ => !stands && steady && bent,
     }
 }

@@ -1,9 +1,10 @@
 //! How strong a ridge a free model needs: what it makes of data that it was not shown.
 //!
 //! Whole runs are left out where there are three or more. Of one or two, blocks of time are left out
-//! with the samples about them, as one run left out would leave no other manoeuvre to learn from. Of
-//! ridges that do about as well the strongest is taken, by one standard error of what is left (Breiman
-//! and others, *Classification and Regression Trees*, 1984); the strongest of all leaves no model.
+//! with the samples about them, as one run left out would leave no other manoeuvre to learn from; but
+//! blocks of a run are alike, so of ridges that do about as well on them the strongest is taken, by one
+//! standard error of what is left (Breiman and others, *Classification and Regression Trees*, 1984).
+//! The strongest of all leaves no model.
 
 /// Ridges to choose from, in units of an input's mean square, the strongest first: no model.
 pub(super) const RIDGES: [f64; 7] = [f64::INFINITY, 10.0, 1.0, 0.1, 1.0e-2, 1.0e-3, 1.0e-4];
@@ -46,10 +47,11 @@ pub(super) fn folds(runs: &[(usize, usize)]) -> Vec<Fold> {
     runs.iter().flat_map(blocks).filter(|fold| fold.from < fold.end).collect()
 }
 
-/// The strongest ridge that leaves no more than the best one, within a standard error over folds.
-/// `left` is what each of [`RIDGES`] leaves of each fold.
+/// The ridge that leaves least of whole runs or, of blocks, the strongest that leaves no more than that
+/// within a standard error. `left` is what each of [`RIDGES`] leaves of each of `folds`.
 #[allow(clippy::cast_precision_loss)]
-pub(super) fn choose(left: &[Vec<f64>]) -> f64 {
+pub(super) fn choose(left: &[Vec<f64>], folds: &[Fold]) -> f64 {
+    let are_runs = folds.iter().all(|fold| fold.end == usize::MAX);
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
     let Some(best) = left.iter().min_by(|a, b| mean(a).total_cmp(&mean(b))) else {
         return f64::INFINITY;
@@ -58,7 +60,8 @@ pub(super) fn choose(left: &[Vec<f64>]) -> f64 {
         let apart: Vec<f64> = of.iter().zip(best).map(|(of, best)| of - best).collect();
         let (folds, middle) = (apart.len() as f64, mean(&apart));
         let squares: f64 = apart.iter().map(|x| (x - middle).powi(2)).sum();
-        middle <= (squares / (folds * (folds - 1.0)).max(1.0)).sqrt()
+        let error = (squares / (folds * (folds - 1.0)).max(1.0)).sqrt();
+        middle <= if are_runs { 0.0 } else { error }
     };
     left.iter().position(|of| as_good(&of)).map_or(f64::INFINITY, |k| RIDGES[k])
 }
@@ -90,15 +93,22 @@ mod tests {
     }
 
     #[test]
-    fn ties_and_chance_leave_no_model_and_a_clear_gain_does_not() {
-        let with = |best: &[f64]| {
+    fn ties_leave_no_model_nor_does_chance_of_a_run_s_own_blocks() {
+        let [blocks, runs] = [folds(&[(0, 300)]), folds(&[(0, 9), (1, 9), (2, 9), (3, 9)])];
+        let with = |best: &[f64], folds: &[Fold]| {
             let mut left = vec![vec![2.0, 3.0, 2.0, 3.0]; RIDGES.len()];
             left[4] = best.to_vec();
-            choose(&left)
+            choose(&left, folds)
         };
-        assert!(with(&[2.0, 3.0, 2.0, 3.0]).is_infinite(), "all alike");
-        assert!(with(&[0.5, 3.2, 2.3, 3.1]).is_infinite(), "better on one fold alone");
-        assert!((with(&[1.6, 2.5, 1.5, 2.7]) - RIDGES[4]).abs() < 1e-12);
-        assert!(choose(&[]).is_infinite() && choose(&vec![vec![]; 7]).is_infinite());
+        for folds in [&blocks, &runs] {
+            assert!(with(&[2.0, 3.0, 2.0, 3.0], folds).is_infinite(), "all alike");
+            assert!((with(&[1.6, 2.5, 1.5, 2.7], folds) - RIDGES[4]).abs() < 1e-12);
+            assert!(
+                choose(&[], folds).is_infinite() && choose(&vec![vec![]; 7], folds).is_infinite()
+            );
+        }
+        let on_one_fold_alone = [0.5, 3.2, 2.3, 3.1];
+        assert!(with(&on_one_fold_alone, &blocks).is_infinite(), "blocks of a run are alike");
+        assert!((with(&on_one_fold_alone, &runs) - RIDGES[4]).abs() < 1e-12, "runs are not");
     }
 }

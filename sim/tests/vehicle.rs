@@ -1,6 +1,9 @@
 //! The whole vehicle against statics, kinematics and its own blocks stepped alone.
 
+use std::path::Path;
+
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_sim::effects::Overlay;
 use xt28_sim::{
     Actuation, Bodies, Drive, DriveInput, Effects, HingeSpring, Loads, Motion, Parts, Plant, Ramp,
     RapierBodies, STEP, Steering, SteeringInput, Terrain, Vehicle, VehicleState,
@@ -163,12 +166,32 @@ impl Bodies for Overheard {
 /// drive. Tolerance: none, to the bit, since nothing between them and the bodies is hidden.
 #[test]
 fn blocks_alone_reproduce_the_whole() {
-    let machine = Machine::xt28();
-    let (effects, strokes) = (Effects::default(), PerWheel::splat(0.17));
+    reproduced(&Effects::default());
+}
+
+/// The same of blocks with effects, each of which has a memory or a law of its own.
+#[test]
+fn blocks_with_effects_alone_reproduce_the_whole() {
+    let text = |name: &str, values: &str| format!("[[effect]]\nname = \"{name}\"\n{values}\n");
+    let late = text("steer-delay", "delay_s = 0.1") + &text("throttle-delay", "delay_s = 0.2");
+    let slow = text("steer-lag", "time_constant_s = 0.2")
+        + &text("steer-rate", "factor = 0.7")
+        + &text("drive-lag", "time_constant_s = 0.3");
+    let loose = text("steer-backlash", "width_rad = 0.03")
+        + &text("engine-droop", "droop_per_w = 2e-6\npower_factor = 0.4");
+    for text in [late, slow, loose] {
+        let effects = Overlay::parse(&text, Path::new("o.toml")).unwrap().effects();
+        assert_ne!(effects, Effects::default());
+        reproduced(&effects);
+    }
+}
+
+fn reproduced(effects: &Effects) {
+    let (machine, strokes) = (Machine::xt28(), PerWheel::splat(0.17));
     let mut vehicle: Vehicle<Overheard> =
-        Vehicle::with(&machine, &effects, &Terrain::Flat, strokes, STEP);
+        Vehicle::with(&machine, effects, &Terrain::Flat, strokes, STEP);
     let steering = Steering::new(&machine, &effects.steering);
-    let drive = Drive::new(&machine, &effects);
+    let drive = Drive::new(&machine, effects);
     let dt_s = STEP.as_secs_f64();
     let (mut joints, mut shaft) = ([(); 2].map(|()| steering.straight(dt_s)), drive.at_rest(dt_s));
     for step in 0..2000 {

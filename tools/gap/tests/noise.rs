@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use made_up::{series, signals, swinging};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use xt28_gap::diagnosis::{Floors, Generator, Residual, Signal, Signals};
+use xt28_gap::diagnosis::{Floors, Generator, Residual, Signal, Signals, with_noise_of};
 use xt28_gap::{Channel, Series};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
@@ -41,10 +41,10 @@ fn noise_of_a_reading_lifts_the_floor_of_what_is_made_of_it_and_no_other() {
     let machine = Machine::xt28();
     let all = noisy(2.0e6);
     let [plain] = signals(&all);
-    let heard = plain.clone().with_noise_of(&all, &machine);
+    let heard = with_noise_of(plain.clone(), &all, &machine);
     assert!(difference(&plain) > 4.0, "{}", difference(&plain));
     assert!((0.5..1.5).contains(&difference(&heard)), "{}", difference(&heard));
-    assert!(heard.floors.lifted().all(|(generator, ..)| generator == Generator::Drive));
+    assert!(heard.floors.lifted().all(|((part, _), ..)| part == "drive"));
     let remark = Floors::remark([&heard.floors].into_iter()).expect("there is something to say");
     assert!(remark.contains("difference of the circuits' pressures of drive"), "{remark}");
 }
@@ -54,7 +54,7 @@ fn ordinary_readings_leave_every_floor_as_it_is() {
     let machine = Machine::xt28();
     let all = noisy(1.0e4);
     let [plain] = signals(&all);
-    let heard = plain.with_noise_of(&all, &machine);
+    let heard = with_noise_of(plain, &all, &machine);
     assert_eq!(heard.floors.lifted().count(), 0);
     assert_eq!(Floors::remark([&heard.floors].into_iter()), None);
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
-use xt28_gap::diagnosis::{Evidence, Floors, Generator, Knob, Signals};
+use xt28_gap::diagnosis::{Evidence, Floors, Generator, Knob, Signals, with_noise_of};
 use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
@@ -74,7 +74,7 @@ impl Where {
         }
         let signals = |run: &KnownRun| {
             let signals = Signals::new(&run.log, run.terrain.clone())?;
-            Ok::<_, GapError>(signals.with_noise_of(run.log.all_series(), &machine))
+            Ok::<_, GapError>(with_noise_of(signals, run.log.all_series(), &machine))
         };
         let runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {

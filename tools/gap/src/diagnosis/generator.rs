@@ -25,6 +25,7 @@ use xt28_sim::effects::{Block, Effect, Scope};
 
 use super::belief::Course;
 use super::floor::Signal;
+use super::floors::BlockKey;
 use super::signals::{Samples, Signals};
 pub(super) use driving::PRESSURE_AT_TORQUE_MAX_PA;
 pub(super) use loads::is_off_scale;
@@ -123,6 +124,17 @@ impl Generator {
         }
     }
 
+    /// What it is called, and which of several alike it is.
+    #[must_use]
+    pub const fn key(self) -> BlockKey {
+        let number = match self {
+            Self::ArmStroke(wheel) | Self::ArmEcu(wheel) => wheel.index(),
+            Self::Joint(joint) | Self::SteerEcu(joint) => joint,
+            Self::Drive | Self::Stance | Self::Travel | Self::Bus => 0,
+        };
+        (self.part(), number)
+    }
+
     /// The block it watches.
     #[must_use]
     pub const fn block(self) -> Block {
@@ -170,10 +182,10 @@ impl Generator {
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
             signal,
-            values: thin(&raw, s.floors.sigma(self, signal)),
+            values: thin(&raw, s.floors.sigma(self.key(), signal)),
         };
         let thinned = |signal: Signal, raw: Samples| {
-            let sigma = s.floors.sigma(self, signal);
+            let sigma = s.floors.sigma(self.key(), signal);
             let values = raw.into_iter().map(|value| value / sigma).collect();
             Residual { generator: self, signal, values }
         };

@@ -5,6 +5,7 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect};
 
+use super::noise::with_noise_of;
 use super::signals::Signals;
 use crate::{FieldLog, GapError, Terrain};
 
@@ -51,7 +52,7 @@ impl Inquiry {
     #[must_use]
     pub fn new(machine: Machine, mut runs: Vec<FieldRun>) -> Self {
         runs.par_iter_mut().for_each(|run| {
-            run.signals = run.signals.clone().with_noise_of(run.log.all_series(), &machine);
+            run.signals = with_noise_of(run.signals.clone(), run.log.all_series(), &machine);
         });
         Self {
             machine,

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::Effects;
 
-use super::floor::Signal;
+use super::floors::Floors;
 use super::generator::{Generator, Residual};
 use super::signals::Signals;
 use crate::{Channel, PumpSide, Series};
@@ -30,66 +30,32 @@ const STEP_SHARE: f64 = 0.6;
 /// Seed of the noise that is added: any would do, and the answer must not depend on when it is asked.
 const SEED: u64 = 28;
 
-/// By how much floors are lifted, 1 or more, where readings are noisier than floors have it.
-#[derive(Clone, Debug, Default)]
-pub struct Floors(BTreeMap<(Generator, Signal), f64>);
-
-impl Floors {
-    /// Standard deviation that separates two models of one machine with these readings, SI.
-    #[must_use]
-    pub fn sigma(&self, generator: Generator, signal: Signal) -> f64 {
-        signal.floor().sigma * self.0.get(&(generator, signal)).copied().unwrap_or(1.0)
-    }
-
-    /// The floors that are lifted, and by how many times.
-    pub fn lifted(&self) -> impl Iterator<Item = (Generator, Signal, f64)> {
-        self.0.iter().map(|((generator, signal), times)| (*generator, *signal, *times))
-    }
-
-    /// What to say of a machine's runs of which some have lifted floors; `None` where none has.
-    pub fn remark<'a>(all: impl Iterator<Item = &'a Self>) -> Option<String> {
-        let mut most: BTreeMap<(&str, String), f64> = BTreeMap::new();
-        for (generator, signal, times) in all.flat_map(Self::lifted) {
-            let old = most.entry((generator.part(), signal.with_wheel())).or_insert(times);
-            *old = old.max(times);
-        }
-        let of = |((part, signal), times): (&(&str, String), &f64)| {
-            format!("{signal} of {part} {times:.1} times")
-        };
-        (!most.is_empty()).then(|| {
-            let all: Vec<String> = most.iter().map(of).collect();
-            format!(
-                "readings are noisier than ordinary, so that small gaps do not show: the noise floor is \
-                 lifted for {}",
-                all.join(", ")
-            )
-        })
-    }
-
-    /// The floors of a run whose readings are `series` and became `signals`.
-    pub(super) fn of(
-        series: &BTreeMap<Channel, Series>,
-        signals: &Signals,
-        machine: &Machine,
-    ) -> Self {
-        let (name, ground) = (&signals.name, signals.terrain.clone());
-        let noisier = noisier(series);
-        let Ok(noisier) = Signals::of_series(name, &noisier, signals.duration_s(), ground) else {
-            return Self::default(); // Not without those that `signals` itself was made of.
-        };
-        let of = |signals: &Signals, generator: Generator| {
-            generator.residuals(signals, machine, &Effects::default())
-        };
-        let lifted = |generator: Generator| {
-            let both = of(signals, generator).into_iter().zip(of(&noisier, generator));
-            both.filter_map(move |(one, other)| {
-                let share = apart(&one, &other);
+/// `signals` with its floors lifted where `readings`, which it was made of, are noisier than floors have
+/// it, by what that makes of each block of `machine`.
+#[must_use]
+pub fn with_noise_of(
+    mut signals: Signals,
+    readings: &BTreeMap<Channel, Series>,
+    machine: &Machine,
+) -> Signals {
+    let (name, ground) = (&signals.name, signals.terrain.clone());
+    let noisier = noisier(readings);
+    let Ok(noisier) = Signals::of_series(name, &noisier, signals.duration_s(), ground) else {
+        return signals; // Not without those that `signals` itself was made of.
+    };
+    let mut floors = Floors::default();
+    for generator in Generator::all() {
+        let of = |s: &Signals| generator.residuals(s, machine, &Effects::default());
+        for (one, other) in of(&signals).iter().zip(of(&noisier)) {
+            let share = apart(one, &other);
+            if share > ORDINARY {
                 let times = (1.0 + share * share - ORDINARY * ORDINARY).sqrt();
-                (share > ORDINARY).then_some(((generator, one.signal), times))
-            })
-        };
-        Self(Generator::all().into_iter().flat_map(lifted).collect())
+                floors.lift(generator.key(), one.signal, times);
+            }
+        }
     }
+    signals.floors = floors;
+    signals
 }
 
 /// The same readings with as much noise once more.

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use xt28_ecus::pins;
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
+use super::floors::Floors;
 use super::instant::Instant;
-use super::noise::Floors;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 use uncut::{CUT_M, uncut};
 
@@ -106,14 +106,6 @@ impl Signals {
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: &FieldLog, terrain: Terrain) -> Result<Self, GapError> {
         Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)
-    }
-
-    /// The same with its floors lifted where `readings`, which it was made of, are noisier than floors
-    /// have it, by what that makes of each block of `machine`.
-    #[must_use]
-    pub fn with_noise_of(self, readings: &AllSeries, machine: &Machine) -> Self {
-        let floors = Floors::of(readings, &self, machine);
-        Self { floors, ..self }
     }
 
     /// `series` sampled for `duration_s` s, under the name of `name`.

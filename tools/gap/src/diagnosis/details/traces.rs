@@ -66,7 +66,7 @@ fn trace(inquiry: &Inquiry, pair: &Pair, i: usize) -> Trace {
     let per_floor = if unit == FLOORS {
         1.0
     } else {
-        run.signals.floors.sigma(pair.generator, before.signal) * per_si
+        run.signals.floors.sigma(pair.generator.key(), before.signal) * per_si
     };
     let error = |values: &Samples| values.iter().map(|value| value * per_floor).collect();
     Trace {

@@ -93,7 +93,7 @@ fn the_same_cases_come_to_the_same_report() {
 #[test]
 fn what_is_withheld_is_not_named_and_sound_machines_have_nothing_to_withhold() {
     let gain = Cause::find("valve-gain").unwrap();
-    let late = Case::of(3, gain, Scope::Axle(Axle::Rear)).only(Manoeuvre::ArmStep, 6.0);
+    let late = Case::of(3, gain, Scope::Axle(Axle::Rear)).only(Manoeuvre::ArmStep, 12.0);
     let sound = Case::draw(4, Kind::Null);
     let machines = [sound, late].map(|case| Source::Drawn(Box::new(case)));
     let all = sweep(&machines, &|_| ()).unwrap();

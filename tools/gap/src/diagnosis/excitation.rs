@@ -14,6 +14,7 @@ use super::floor::Signal;
 use super::signals::Signals;
 use super::verdict::NotTestable;
 use measure::Excitation;
+pub(super) use measure::UNLOADED_N;
 use need::Need;
 
 /// What an effect needs to show; those not listed show on any machine, and wherever it stands.

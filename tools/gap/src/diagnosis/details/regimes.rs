@@ -3,6 +3,7 @@
 use xt28_machine::{Machine, Wheel};
 
 use super::{Pair, STEP_S, rms, wheel_of};
+use crate::diagnosis::excitation::UNLOADED_N;
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{DT_S, Signals};
 
@@ -26,8 +27,6 @@ pub const REGIMES: [&str; 10] = [
 const SHUT: f64 = 0.01;
 /// Closer than this to an end of its stroke an arm may meet it, m.
 const NEAR_END_M: f64 = 0.02;
-/// A cylinder that carries less has its wheel in the air, N (assumed).
-const UNLOADED_N: f64 = 5.0e3;
 /// Slower than this the machine stands, m/s.
 const STANDS_M_S: f64 = 0.05;
 /// A change of speed above this is not a steady drive, m/s2.

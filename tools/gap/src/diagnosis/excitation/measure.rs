@@ -16,7 +16,7 @@ const STEP_S: f64 = 0.1;
 /// An opening below this is a closed valve: the ECU's currents have no smaller step that flows.
 const CLOSED: f64 = 0.01;
 /// A cylinder that carries less has its wheel in the air, N.
-const UNLOADED_N: f64 = 5.0e3;
+pub(in crate::diagnosis) const UNLOADED_N: f64 = 5.0e3;
 /// Throttle below this is let go.
 const LET_GO: f64 = 0.02;
 /// Wheels slower than this stand, rad/s.

@@ -238,9 +238,7 @@ impl Learnt {
         };
         let folds = folds::folds(&runs(lessons));
         let by_fold: Vec<[f64; RIDGES.len()]> = folds.par_iter().map(left).collect();
-        let by_ridge: Vec<Vec<f64>> =
-            (0..RIDGES.len()).map(|k| by_fold.iter().map(|left| left[k]).collect()).collect();
-        let model = Fit::of(lessons, &scale, |_, _| true).model(folds::choose(&by_ridge, &folds));
+        let model = Fit::of(lessons, &scale, |_, _| true).model(folds::choose(&by_fold, &folds));
         Self { scale, model }
     }
 

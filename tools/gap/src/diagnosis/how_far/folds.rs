@@ -47,10 +47,16 @@ pub(super) fn folds(runs: &[(usize, usize)]) -> Vec<Fold> {
     runs.iter().flat_map(blocks).filter(|fold| fold.from < fold.end).collect()
 }
 
+/// The ridge to take by what each of [`RIDGES`] leaves of each of `folds`.
+pub(super) fn choose(by_fold: &[[f64; RIDGES.len()]], folds: &[Fold]) -> f64 {
+    let of = |k: usize| by_fold.iter().map(|left| left[k]).collect();
+    strongest(&(0..RIDGES.len()).map(of).collect::<Vec<_>>(), folds)
+}
+
 /// The ridge that leaves least of whole runs or, of blocks, the strongest that leaves no more than that
 /// within a standard error. `left` is what each of [`RIDGES`] leaves of each of `folds`.
 #[allow(clippy::cast_precision_loss)]
-pub(super) fn choose(left: &[Vec<f64>], folds: &[Fold]) -> f64 {
+fn strongest(left: &[Vec<f64>], folds: &[Fold]) -> f64 {
     let are_runs = folds.iter().all(|fold| fold.end == usize::MAX);
     let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
     let Some(best) = left.iter().min_by(|a, b| mean(a).total_cmp(&mean(b))) else {
@@ -98,13 +104,14 @@ mod tests {
         let with = |best: &[f64], folds: &[Fold]| {
             let mut left = vec![vec![2.0, 3.0, 2.0, 3.0]; RIDGES.len()];
             left[4] = best.to_vec();
-            choose(&left, folds)
+            strongest(&left, folds)
         };
         for folds in [&blocks, &runs] {
             assert!(with(&[2.0, 3.0, 2.0, 3.0], folds).is_infinite(), "all alike");
             assert!((with(&[1.6, 2.5, 1.5, 2.7], folds) - RIDGES[4]).abs() < 1e-12);
             assert!(
-                choose(&[], folds).is_infinite() && choose(&vec![vec![]; 7], folds).is_infinite()
+                strongest(&[], folds).is_infinite()
+                    && strongest(&vec![vec![]; 7], folds).is_infinite()
             );
         }
         let on_one_fold_alone = [0.5, 3.2, 2.3, 3.1];

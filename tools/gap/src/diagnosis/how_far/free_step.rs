@@ -140,10 +140,8 @@ impl Model {
             core::array::from_fn(of)
         };
         let by_fold: Vec<[f64; RIDGES.len()]> = trusts.iter().map(left).collect();
-        let by_ridge: Vec<Vec<f64>> =
-            (0..RIDGES.len()).map(|k| by_fold.iter().map(|left| left[k]).collect()).collect();
         let folds: Vec<Fold> = trusts.iter().map(|trusts| trusts.fold).collect();
-        let chosen = folds::choose(&by_ridge, &folds);
+        let chosen = folds::choose(&by_fold, &folds);
         let ridge = RIDGES.iter().position(|ridge| ridge.total_cmp(&chosen).is_eq())?;
         let (normal, reach) = normal(j, lessons, |_, _| true);
         Some(Self { law: normal.law(chosen)?, ridge, reach })

@@ -161,6 +161,7 @@ impl Actuators {
             drive_nm: drive.wheel_torque_nm,
             drag: self.rolling_drag(motion),
             hold_nm: drive.hold_nm.map(|nm| nm + brake_nm),
+            on_wheel: PerWheel::default(),
         }
     }
 

@@ -87,6 +87,15 @@ impl RollingDrag {
     }
 }
 
+/// A force and a torque on a body, along the solver's axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force, N.
+    pub force_n: [f64; 3],
+    /// Torque about the point at which the force acts, Nm.
+    pub torque_nm: [f64; 3],
+}
+
 /// How the rigid bodies move at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
@@ -139,4 +148,6 @@ pub struct Loads {
     pub drag: PerWheel<RollingDrag>,
     /// Dry friction that holds each wheel against its arm, Nm.
     pub hold_nm: PerWheel<f64>,
+    /// What else acts on each wheel, at its centre: the ground of who has tyres of their own.
+    pub on_wheel: PerWheel<Wrench>,
 }

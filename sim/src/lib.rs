@@ -26,7 +26,7 @@ pub use blocks::{
     Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, PATCHES_MAX, PatchInput,
     PatchState, Patches, Steering, SteeringInput, SteeringState, Tyre, Valve, ValveState,
 };
-pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed, RollingDrag};
+pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed, RollingDrag, Wrench};
 pub use effects::Effects;
 pub use fleet::Fleet;
 pub use parts::{

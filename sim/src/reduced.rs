@@ -185,7 +185,10 @@ impl ReducedBodies {
         let mut on_wheel = [spatial::ZERO; 6];
         for i in 0..6 {
             lack[WHEELS + i] -= loads.drive_nm.0[i];
-            on_wheel[i] = spatial::join(pose.arm[i].axle * loads.drag.0[i].torque_nm, DVec3::ZERO);
+            let (arm, outside) = (&pose.arm[i], &loads.on_wheel.0[i]);
+            let force = DVec3::from(outside.force_n);
+            let torque = arm.axle * loads.drag.0[i].torque_nm + DVec3::from(outside.torque_nm);
+            on_wheel[i] = spatial::join(torque + arm.wheel.cross(force), force);
         }
         let from_ground = newton::generalised(pose, &on_wheel, [spatial::ZERO; 3]);
         for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {

@@ -266,9 +266,10 @@ impl RapierBodies {
             let [force, torque] =
                 self.tyres[wheel].push(&rim, &self.terrain, &loads.drag[wheel], dt_s);
             let body = &mut self.world.bodies[self.wheels[wheel]];
+            let outside = &loads.on_wheel[wheel];
             body.reset_forces(false);
-            body.add_force(force, false);
-            body.add_torque(torque, false);
+            body.add_force(force + vector(outside.force_n), false);
+            body.add_torque(torque + vector(outside.torque_nm), false);
             self.ground_force_n[wheel] = f64::from(force.z);
         }
     }

@@ -17,10 +17,9 @@ use crate::{Failure, Verdict};
 /// Examine the diagnosis on machines whose faults are known, and print every score with its interval
 ///
 /// Answers are sealed before the first diagnosis (a salted SHA-256) and opened after the last. Without
-/// --set, cases are drawn from plants that share no effect code with the diagnosis but for soft-tyres,
-/// slippery-ground and terrain-slope, which act through the simulator's own bodies and tyres: a fifth
-/// sound, half with one effect, 15 % with two, 15 % with one that is in no catalogue. Beside the
-/// diagnosis stand three plain rules on the same logs.
+/// --set, cases are drawn from plants that share no effect code with the diagnosis: a fifth sound, half
+/// with one effect, 15 % with two, 15 % with one that is in no catalogue. Beside the diagnosis stand
+/// three plain rules on the same logs.
 #[derive(Args)]
 pub(crate) struct Check {
     /// Folder of other machines' cases: NAME/about.toml with logs and DBC each, and the answers as

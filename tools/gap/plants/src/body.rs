@@ -1,11 +1,8 @@
 //! The rigid parts of a foreign machine, from what is true of it.
-//!
-//! Tyres and the lean of the ground are parts of the bench's own solver, and so are the effects on them.
 
-use xt28_machine::{GRAVITY_M_S2, Wheel};
-use xt28_sim::{Effects, Part, Parts, Tilt};
+use xt28_sim::{Effects, Part, Parts};
 
-use crate::truth::{BodyTruth, Logs, Truth};
+use crate::truth::{Logs, Truth};
 
 /// Logs lie in this many bundles along the bunk, each a box of this length, width and height, m.
 const BUNDLES: [f64; 3] = [-1.4, 0.0, 1.4];
@@ -23,14 +20,6 @@ pub(crate) fn parts(truth: &Truth) -> Parts {
     for bundle in bundles(&body.logs, bunk_x_m) {
         parts.frames[2] = parts.frames[2].joined(bundle);
     }
-    for wheel in Wheel::ALL {
-        let (tyre, part) = (&body.tyres[wheel], &mut parts.tyres[wheel]);
-        part.stiffness_n_m = tyre.stiffness_n_m;
-        part.damping_n_s_m = tyre.damping_n_s_m;
-        part.friction = tyre.friction;
-        part.slip = tyre.slip;
-    }
-    lean(&mut parts, body);
     parts
 }
 
@@ -40,15 +29,6 @@ fn bundles(logs: &Logs, bunk_x_m: f64) -> impl Iterator<Item = Part> {
         let com_m = [bunk_x_m + logs.ahead_m + x_m, logs.lateral_m, BUNDLE_Z_M];
         Part::solid_box(logs.mass_kg / BUNDLES.len() as f64, com_m, BUNDLE_M)
     })
-}
-
-/// Lets gravity lean: the ground stays where it is for a solver.
-fn lean(parts: &mut Parts, body: &BodyTruth) {
-    let [ahead_rad, left_rad] = body.slope_rad;
-    parts.tilt = Tilt::new(ahead_rad, left_rad);
-    if let Some(tilt) = parts.tilt {
-        parts.gravity_m_s2 = tilt.to_ground([0.0, 0.0, -GRAVITY_M_S2]);
-    }
 }
 
 #[cfg(test)]
@@ -65,15 +45,5 @@ mod tests {
         let share = 6000.0 / loaded.mass_kg;
         assert!((loaded.com_m[1] - 0.2 * share).abs() < 1e-9);
         assert!(loaded.inertia_kg_m2[2] > empty.inertia_kg_m2[2] + 6000.0);
-    }
-
-    #[test]
-    fn gravity_leans_as_the_ground_does() {
-        let mut truth = Truth::nominal();
-        truth.body.slope_rad = [0.02, -0.03];
-        let parts = parts(&truth);
-        let seen = parts.tilt.unwrap().to_world(parts.gravity_m_s2);
-        assert!(seen[0].abs() < 1e-3 && seen[1].abs() < 1e-3, "{seen:?}");
-        assert!((seen[2] + GRAVITY_M_S2).abs() < 1e-4);
     }
 }

@@ -1,11 +1,10 @@
 //! Foreign machines for examining a diagnosis: plants with known faults, and their field logs.
 //!
 //! A [`Case`] is one machine drawn from a seed: its tolerances, what is wrong with it, and the logs of
-//! scripted test drives. Rigid bodies are the bench's; hydraulics, drive, steering, ECUs and sensors
-//! are written anew with other physics (chamber pressures, spools with mass, circuit pressure,
-//! another integrator), so that a diagnosis cannot find its own equations in the data. Three effects are
-//! the exception, as they act through the bench's solver with its tyres and its tilt: `soft-tyres`,
-//! `slippery-ground` and `terrain-slope`. What is scored of these is flattered.
+//! scripted test drives. Rigid bodies are the bench's; hydraulics, drive, steering, tyres, ground, ECUs
+//! and sensors are written anew with other physics (chamber pressures, spools with mass, circuit
+//! pressure, tyres that creep and soil that shears, another integrator), so that a diagnosis cannot find
+//! its own equations in the data.
 //!
 //! | | |
 //! |---|---|
@@ -23,10 +22,12 @@ mod causes;
 mod database;
 mod drive;
 mod ecu;
+mod ground;
 mod history;
 mod hydraulics;
 mod machine;
 mod manoeuvre;
+mod rims;
 mod run;
 mod scope;
 mod seal;
@@ -34,6 +35,7 @@ mod sensing;
 mod steering;
 mod tolerance;
 mod truth;
+mod tyre;
 mod wire;
 
 pub use answer::{Answer, Fact};

@@ -1,16 +1,22 @@
-//! A foreign machine: rigid bodies of the bench, every other law of its own.
+//! A foreign machine: rigid bodies of the bench, every other law of its own, tyres and ground included.
 
 use xt28_machine::{Linkage, PerWheel, Wheel};
-use xt28_sim::{Bodies, HingeSpring, Loads, Motion, REFERENCE_STROKE_M, Terrain, Tilt};
+use xt28_sim::terrain::Plane;
+use xt28_sim::{HingeSpring, Loads, Motion, Parts, Placed, REFERENCE_STROKE_M, Ramp, Terrain};
 
 use crate::body::parts;
 use crate::drive::{Drive, DriveDemand};
+use crate::ground::ground;
 use crate::hydraulics::{Arm, RodMotion, Supply};
+use crate::rims::rims;
 use crate::steering::Joint;
 use crate::truth::Truth;
+use crate::tyre::Carcass;
 
 /// Step of the machine, s; the bench's own plant takes another.
 pub(crate) const STEP_S: f64 = 0.002;
+/// How far below the yard the solver has its own ground, m: its own tyres never touch it.
+const PIT_M: f64 = 50.0;
 
 /// What the ECUs hold at the machine's inputs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,7 +28,7 @@ pub(crate) struct Inputs {
     pub(crate) drive: DriveDemand,
 }
 
-/// What is to be seen of the machine at one instant, in the level world.
+/// What is to be seen of the machine at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Instant {
     pub(crate) stroke_m: PerWheel<f64>,
@@ -45,9 +51,10 @@ pub(crate) struct Instant {
 #[derive(Clone, Debug)]
 pub(crate) struct Foreign<B> {
     bodies: B,
+    parts: Parts,
     linkage: Linkage,
-    tilt: Option<Tilt>,
-    com_m: [f64; 3],
+    ground: Terrain,
+    carcasses: PerWheel<Carcass>,
     motion: Motion,
     /// Stroke and rate a step ago.
     rod: PerWheel<[f64; 2]>,
@@ -57,17 +64,22 @@ pub(crate) struct Foreign<B> {
     drive: Drive,
 }
 
-impl<B: Bodies> Foreign<B> {
-    /// Set down on `terrain` at `stroke_m`, valves closed.
-    pub(crate) fn new(truth: &Truth, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
+impl<B: Placed> Foreign<B> {
+    /// Set down on the yard, with `ramp` on it, at `stroke_m`, valves closed.
+    pub(crate) fn new(truth: &Truth, ramp: Option<&Ramp>, stroke_m: PerWheel<f64>) -> Self {
         let parts = parts(truth);
-        let bodies = B::new(&parts, terrain, stroke_m);
+        let slope_rad = truth.body.slope_rad;
+        let pit = Plane { height_m: -PIT_M, rise: slope_rad.map(f64::tan) };
+        let mut bodies = B::new(&parts, &Terrain::Plane(pit), stroke_m);
+        let mut motion = bodies.motion();
+        motion.position_m[2] += PIT_M;
+        bodies.place(&motion);
         Self {
-            motion: bodies.motion(),
+            motion,
             bodies,
             linkage: parts.linkage,
-            tilt: parts.tilt,
-            com_m: parts.frames[0].com_m,
+            ground: ground(slope_rad, ramp),
+            carcasses: PerWheel::default(),
             rod: stroke_m.map(|stroke_m| [stroke_m, 0.0]),
             arms: PerWheel::from_fn(|wheel| {
                 let load_n = truth.mean_load_n(stroke_m[wheel]);
@@ -76,6 +88,7 @@ impl<B: Bodies> Foreign<B> {
             supply: Supply::default(),
             joints: [(); 2].map(|()| Joint::straight(STEP_S)),
             drive: Drive::at_rest(&truth.machine, STEP_S),
+            parts,
         }
     }
 
@@ -94,6 +107,7 @@ impl<B: Bodies> Foreign<B> {
         let rolling = truth.body.tyres.map(|tyre| tyre.rolling);
         let torques =
             self.drive.step(&truth.drive, machine, &rolling, &inputs.drive, &self.motion, STEP_S);
+        let rims = rims(&self.parts, &self.motion);
         let loads = Loads {
             arm: PerWheel::from_fn(|wheel| {
                 self.press(truth, wheel, share * arms[wheel].speed_m_s, time_s)
@@ -105,9 +119,14 @@ impl<B: Bodies> Foreign<B> {
             drive_nm: torques.drive_nm,
             drag: torques.drag,
             hold_nm: torques.hold_nm,
+            on_wheel: PerWheel::from_fn(|wheel| {
+                let (tyre, radius_m) = (&truth.body.tyres[wheel], self.parts.radius_m);
+                self.carcasses[wheel].step(tyre, radius_m, &rims[wheel], &self.ground, STEP_S)
+            }),
         };
         self.bodies.advance(&loads, STEP_S);
         self.motion = self.bodies.motion();
+        self.motion.ground_force_n = loads.on_wheel.map(|wrench| wrench.force_n[2]);
     }
 
     /// An arm's cylinder about its hinge, with the oil let in for `speed_m_s`.
@@ -137,7 +156,7 @@ impl<B: Bodies> Foreign<B> {
 
     /// What is to be seen now.
     pub(crate) fn now(&self, truth: &Truth) -> Instant {
-        let motion = self.tilt.map_or(self.motion, |tilt| self.motion.in_world(&tilt));
+        let motion = &self.motion;
         Instant {
             stroke_m: PerWheel::from_fn(|wheel| self.linkage.stroke_m(self.angle_rad(wheel))),
             pressure_pa: PerWheel::from_fn(|wheel| {
@@ -151,7 +170,7 @@ impl<B: Bodies> Foreign<B> {
             axes: motion.axes,
             velocity_m_s: motion.velocity_m_s,
             rate_rad_s: motion.rate_rad_s,
-            com_m: self.com_m,
+            com_m: self.parts.frames[0].com_m,
         }
     }
 }

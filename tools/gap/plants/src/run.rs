@@ -4,7 +4,7 @@ use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 use xt28_dbc::{EncodeError, Frame};
 use xt28_machine::SimTime;
-use xt28_sim::{Bodies, Terrain};
+use xt28_sim::Placed;
 
 use crate::ecu::TICK_S;
 use crate::ecu::arm::{ArmEcu, opening};
@@ -35,7 +35,7 @@ pub(crate) type Timeline = Vec<(f64, Truth)>;
 ///
 /// # Errors
 /// A number that the wire cannot say: the machine has gone astray.
-pub(crate) fn run<B: Bodies>(
+pub(crate) fn run<B: Placed>(
     timeline: &Timeline,
     script: &Script,
     random: &mut ChaCha8Rng,
@@ -68,12 +68,12 @@ struct Bench<'a, B> {
     log: Vec<(SimTime, Frame)>,
 }
 
-impl<'a, B: Bodies> Bench<'a, B> {
+impl<'a, B: Placed> Bench<'a, B> {
     fn new(timeline: &'a Timeline, script: &'a Script, random: &'a mut ChaCha8Rng) -> Self {
         let first = script.at(0.0);
         let truth = &timeline[0].1;
-        let terrain = script.ramp.as_ref().map_or(Terrain::Flat, Terrain::ramp);
-        let machine = Foreign::new(truth, &terrain, first.stroke_mm.map(|mm| mm * 1e-3));
+        let stroke_m = first.stroke_mm.map(|mm| mm * 1e-3);
+        let machine = Foreign::new(truth, script.ramp.as_ref(), stroke_m);
         let mut noise = random.clone();
         noise.set_stream(random.get_stream() + 1);
         Self {

@@ -12,6 +12,9 @@ const MASS: f64 = 0.03;
 const LAW: f64 = 0.05;
 /// Most that the ground leans, rad: 0.3 deg.
 const SLOPE_RAD: f64 = 0.3 * std::f64::consts::PI / 180.0;
+/// Most that a foot gives way along the ground, m/s/N: that of a make whose tyres creep by 8 mm/s
+/// under a kilonewton. Makes lie anywhere below.
+const CREEP_M_S_N: f64 = 8.0e-6;
 /// Unevenness of the senders, s.
 const JITTER_S: f64 = 2.5e-4;
 
@@ -55,6 +58,11 @@ impl Truth {
             *number *= near(LAW);
         }
         truth.body.slope_rad = [(); 2].map(|()| random.random_range(-SLOPE_RAD..SLOPE_RAD));
+        // From a stream of its own, so that what else is drawn stays as it was without.
+        let mut make = random.clone();
+        make.set_stream(random.get_stream() + 1);
+        let creep_m_s_n = make.random_range(0.0..CREEP_M_S_N);
+        truth.body.tyres.0.iter_mut().for_each(|tyre| tyre.creep_m_s_n = creep_m_s_n);
         truth.sensors.noise = 1.0;
         truth.bus.jitter_s = JITTER_S;
         truth

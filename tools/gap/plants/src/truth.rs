@@ -39,6 +39,10 @@ pub(crate) struct Tyre {
     pub(crate) friction: f64,
     /// Share of the rolling that is not travel.
     pub(crate) slip: f64,
+    /// Slip over which soil comes to 63 % of its friction as it shears.
+    pub(crate) shear: f64,
+    /// How fast a standing foot gives way to a force along the ground, m/s/N.
+    pub(crate) creep_m_s_n: f64,
     /// Drag torque over normal force and radius.
     pub(crate) rolling: f64,
 }
@@ -215,6 +219,8 @@ impl Truth {
             damping_n_s_m: v.tyre_damping_n_s_m,
             friction: w.friction,
             slip: 0.0,
+            shear: 0.01,
+            creep_m_s_n: 0.0,
             rolling: w.rolling_resistance,
         };
         // 32 Hz, well damped: a quick valve, 9 ms behind its command (assumed).

@@ -3,6 +3,10 @@
 use crate::causes::{Block, Cause, Parameter, Scopes, Span};
 use crate::manoeuvre::Manoeuvre;
 
+/// Slip at which wet soil has 63 % of its friction (assumed; Wong has a shear deformation of 25 to
+/// 60 mm under a contact of some 0.4 m).
+const SHEAR: f64 = 0.08;
+
 /// The ground's top layer gives way, and holds less.
 pub(super) const CAUSE: Cause = Cause {
     name: "slippery-ground",
@@ -20,6 +24,7 @@ pub(super) const CAUSE: Cause = Cause {
         for wheel in scope.wheels() {
             truth.body.tyres[wheel].friction = v[0];
             truth.body.tyres[wheel].slip = v[1];
+            truth.body.tyres[wheel].shear = SHEAR;
         }
     },
 };

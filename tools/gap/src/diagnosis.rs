@@ -40,7 +40,7 @@ pub use evidence::{Echo, Evidence, Left};
 pub use excitation::not_testable;
 pub use floor::{Floor, Signal};
 pub use floors::{BlockKey, Floors};
-pub use generator::{Generator, Residual};
+pub use generator::{Generator, Residual, share_resistance};
 pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde_json::json;
-use xt28_gap::diagnosis::{Evidence, Floors, Generator, Knob, Signals, with_noise_of};
+use xt28_gap::diagnosis::{
+    Evidence, Floors, Generator, Knob, Signals, share_resistance, with_noise_of,
+};
 use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
@@ -20,7 +22,8 @@ use crate::{Failure, Verdict};
 /// in units of what separates two models of one nominal machine (as in `diagnose`; the JSON has its
 /// square as well, as gap_over_floor). A sound machine, whose every part is a little off, shows up to
 /// about 2.5; beyond 3.2 there is something to explain. Blocks of which nothing can be judged have none: how the
-/// machine stands, travels and is driven is judged on level ground alone.
+/// machine stands, travels and is driven is judged on level
+/// ground, or on a slope that is known, alone.
 #[derive(Args)]
 pub(crate) struct Where {
     /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames
@@ -76,7 +79,8 @@ impl Where {
             let signals = Signals::new(&run.log, run.terrain.clone())?;
             Ok::<_, GapError>(with_noise_of(signals, run.log.all_series(), &machine))
         };
-        let runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
+        let mut runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
+        share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
             eprintln!("{remark}");
         }

@@ -6,6 +6,7 @@ mod axles;
 mod bus;
 mod controllers;
 mod driving;
+mod grade;
 mod joints;
 mod loads;
 mod position_control;
@@ -29,6 +30,7 @@ use super::floors::BlockKey;
 use super::signals::{Samples, Signals};
 pub(super) use driving::PRESSURE_AT_TORQUE_MAX_PA;
 pub(super) use loads::is_off_scale;
+pub use rolling::share_resistance;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;

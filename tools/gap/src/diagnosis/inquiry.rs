@@ -5,6 +5,7 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect};
 
+use super::generator::share_resistance;
 use super::noise::with_noise_of;
 use super::signals::Signals;
 use crate::{FieldLog, GapError, Terrain};
@@ -48,12 +49,13 @@ impl FieldRun {
 
 impl Inquiry {
     /// The nominal machine with every effect of the catalogue in question. Floors become those of the
-    /// logs' own noise.
+    /// logs' own noise, and what resists the wheels is known to all runs.
     #[must_use]
     pub fn new(machine: Machine, mut runs: Vec<FieldRun>) -> Self {
         runs.par_iter_mut().for_each(|run| {
             run.signals = with_noise_of(run.signals.clone(), run.log.all_series(), &machine);
         });
+        share_resistance(runs.iter_mut().map(|run| &mut run.signals), &machine);
         Self {
             machine,
             believed: Effects::default(),

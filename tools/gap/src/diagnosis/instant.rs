@@ -22,8 +22,9 @@ pub(super) struct Instant {
     pub(super) attitude_rad: [f64; 2],
     /// Acceleration to the left and forward, m/s².
     pub(super) acceleration_m_s2: [f64; 2],
-    /// Heading, counter-clockwise from east, rad.
-    pub(super) heading_rad: f64,
+    /// Cosine and sine of the heading, counter-clockwise from east, as roll and as pitch have it: a machine that
+    /// turns on a slope stands otherwise before the attitude's filter has followed.
+    pub(super) heading: [[f64; 2]; 2],
     /// What it says of each wheel.
     pub(super) wheels: PerWheel<AtWheel>,
 }

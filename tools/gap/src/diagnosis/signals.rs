@@ -93,6 +93,9 @@ pub struct Signals {
     pub headings: Vec<[f64; 3]>,
     /// What separates two models of one machine with readings as noisy as these.
     pub floors: Floors,
+    /// Torque with which wheels resist their rolling beyond what is ordinary, Nm: what all runs of a machine
+    /// say together, none before they were asked ([`super::share_resistance`]).
+    pub resists_nm: f64,
     /// Made of the above when first asked for.
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
@@ -182,6 +185,7 @@ impl Signals {
             fixes: receiver::fixes(series),
             headings: receiver::headings(series),
             floors: Floors::default(),
+            resists_nm: 0.0,
             instants: OnceLock::new(),
             antenna_leans_m: OnceLock::new(),
             scrubs: OnceLock::new(),

@@ -41,7 +41,7 @@ pub(super) enum Need {
     /// Commands that change.
     Commands,
     /// A signal that could be judged for [`JUDGED_S`] at all: how the machine stands and travels, and what
-    /// drives it, is judged on level ground alone.
+    /// drives it, is judged on level ground or a known slope alone.
     Judged(Signal),
 }
 
@@ -92,7 +92,7 @@ impl Need {
                 (is_s < JUDGED_S).then(|| {
                     format!(
                         "{signal} could be judged for {is_s:.1} s of {JUDGED_S:.0} s needed, on \
-                         level ground and with loads on their scale"
+                         level ground or a known slope and with loads on their scale"
                     )
                 })
             }

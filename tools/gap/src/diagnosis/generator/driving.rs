@@ -7,8 +7,9 @@
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
-use xt28_sim::{Drive, DriveInput, Effects, Terrain};
+use xt28_sim::{Drive, DriveInput, Effects};
 
+use super::grade::Grade;
 use super::scrub::scrub_drag_nm;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
@@ -89,12 +90,19 @@ fn circuits_pa(signals: &Signals, i: usize) -> [f64; 2] {
     [measured(1) - measured(0), measured(3) - measured(2)]
 }
 
-/// Torque that the motion takes less the torque there was, mean of the wheels, Nm. `NaN` off level
-/// ground: where each wheel stands is then not known well enough.
+/// Torque of a wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
+pub(super) fn motor_nm(s: &Signals, machine: &Machine, wheel: Wheel, i: usize) -> f64 {
+    let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
+    let over_pa = circuits_pa(s, i)[usize::from(!first)];
+    over_pa * (machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA)
+}
+
+/// Torque that the motion takes less the torque there was, mean of the wheels, Nm. `NaN` on ground that
+/// is no plane: where each wheel stands is then not known well enough.
 fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
-    if !matches!(signals.terrain, Terrain::Flat) {
+    let Some(ground) = Grade::believed(signals, effects) else {
         return vec![f64::NAN; signals.len];
-    }
+    };
     let w = &machine.wheels;
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
     let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
@@ -118,7 +126,7 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
                 let rolls = (mean(i) / TURNS_RAD_S).tanh();
                 let apart = inertia_kg_m2 * speeds_up
                     + drag_nm * rolls
-                    + weight_nm * climbs(signals, machine, effects, i)
+                    + weight_nm * climbs(signals, machine, effects, ground, i)
                     + scrub_nm[i]
                     - nm_per_pa * (first + second) / 2.0;
                 // A wheel at rest is held by anything up to its rolling resistance.
@@ -134,7 +142,13 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
 /// Sine of the grade that the machine climbs at sample `i`: each frame climbs along its own heading, by
 /// its share of the weight.
 #[allow(clippy::cast_precision_loss)]
-pub(super) fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i: usize) -> f64 {
+pub(super) fn climbs(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    ground: Grade,
+    i: usize,
+) -> f64 {
     let front = signals.heading_near(i as f64 * DT_S).unwrap_or_default();
     let middle = front - signals.joint_rad[0][i];
     let rear = middle - signals.joint_rad[1][i];
@@ -145,8 +159,6 @@ pub(super) fn climbs(signals: &Signals, machine: &Machine, effects: &Effects, i:
         (middle, m.middle_frame_kg + axle_kg),
         (rear, m.rear_frame_kg + axle_kg + payload_kg),
     ];
-    let [grade_x, grade_y] = [effects.slope.grade_x_rad.sin(), effects.slope.grade_y_rad.sin()];
-    let along =
-        |(heading, kg): (f64, f64)| kg * (grade_x * heading.cos() + grade_y * heading.sin());
+    let along = |(heading, kg): (f64, f64)| kg * ground.climb(heading);
     frames.map(along).iter().sum::<f64>() / (machine.mass_kg() + payload_kg)
 }

@@ -4,11 +4,12 @@
 //! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
 //! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
 
-use xt28_machine::{ArmPose, Linkage, Machine, PerWheel, Side};
+use xt28_machine::{ArmPose, GRAVITY_M_S2, Linkage, Machine, PerWheel, Side, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::axles::Axles;
-use super::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use super::driving::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
+use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
 use crate::diagnosis::signals::{Samples, Signals};
 
@@ -26,6 +27,11 @@ const CARRYING_N: f64 = 8_000.0;
 /// Torque at which a tyre creeps by as much as else separates two models, Nm (seen on the nominal logs
 /// of a second plant: 0.1 m/s at 10 kNm).
 const CREEPS_NM: f64 = 400.0;
+/// Resistance to rolling that is ordinary, times that of the machine file: bends, scrub and a slope of half a
+/// degree among it.
+const ORDINARY: f64 = 1.75;
+/// Speed at which a log's wheels tell what resists them, rad/s.
+const TRAVELS_RAD_S: f64 = 0.3;
 /// Samples from one look to the next.
 const STRIDE: usize = 5;
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
@@ -37,7 +43,7 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     let (axles, linkage) = (Axles::new(machine), machine.linkage());
     let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
-    let is_flat = matches!(s.terrain, xt28_sim::Terrain::Flat);
+    let is_plane = Grade::known(s).is_some();
     let mut errors = RollingErrors {
         wheel_rad_s: PerWheel::from_fn(|_| vec![f64::NAN; s.len]),
         ahead_m_s: vec![0.0; s.len],
@@ -66,7 +72,7 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
         }
         let ahead = product / square;
         errors.ahead_m_s[i..end].fill(ahead);
-        if !is_flat || joint.iter().any(|rad| rad.abs() > BENT_RAD) {
+        if !is_plane || joint.iter().any(|rad| rad.abs() > BENT_RAD) {
             continue;
         }
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
@@ -85,7 +91,33 @@ fn doubt(s: &Signals, machine: &Machine, i: usize) -> f64 {
     let over = |a: usize| (s.pump_pressure_pa[a + 1][i] - s.pump_pressure_pa[a][i]).abs();
     let torque_nm =
         0.5 * (over(0) + over(2)) * machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
-    1.0 + torque_nm / CREEPS_NM
+    1.0 + (torque_nm + s.resists_nm) / CREEPS_NM
+}
+
+/// Lets all runs of one machine know with what torque its wheels resist their rolling, by those that travel.
+pub fn share_resistance<'a>(runs: impl Iterator<Item = &'a mut Signals>, machine: &Machine) {
+    let runs: Vec<&mut Signals> = runs.collect();
+    let most_nm = runs.iter().map(|s| resists_nm(s, machine)).fold(0.0, f64::max);
+    runs.into_iter().for_each(|s| s.resists_nm = most_nm);
+}
+
+/// Torque with which a log's wheels resist their rolling beyond what is ordinary, Nm, by what its motors make
+/// while it travels. Tyres creep by it as by a motor's, and where arms swing at standstill by it alone.
+fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
+    let w = &machine.wheels;
+    let mut torques_nm: Samples = (0..s.len)
+        .step_by(STRIDE)
+        .filter(|&i| s.mean_wheel_speed_rad_s(i) > TRAVELS_RAD_S)
+        .map(|i| 0.5 * (motor_nm(s, machine, Wheel::Fr, i) + motor_nm(s, machine, Wheel::Fl, i)))
+        .filter(|nm| nm.is_finite())
+        .collect();
+    if torques_nm.is_empty() {
+        return 0.0;
+    }
+    let middle = torques_nm.len() / 2;
+    let median_nm = *torques_nm.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let weight_nm = machine.mass_kg() * GRAVITY_M_S2 * w.radius_m / 6.0;
+    (median_nm - ORDINARY * w.rolling_resistance * weight_nm).max(0.0)
 }
 
 /// Speed at which each wheel's frame goes over the ground by what its sensor reads, m/s.

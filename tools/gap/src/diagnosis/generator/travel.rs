@@ -3,6 +3,7 @@
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::Effects;
 
+use super::grade::Grade;
 use super::rolling::rolling_errors;
 use super::stance::antenna_leans_m;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
@@ -43,7 +44,7 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     };
     let mut speed = vec![f64::NAN; s.len];
     let mut course = vec![f64::NAN; s.len];
-    let flat = matches!(s.terrain, xt28_sim::Terrain::Flat);
+    let ground = Grade::believed(s, effects);
     let lever = effects.sensors.gnss_lever_arm;
     let leans_m = s.antenna_leans_m(|| antenna_leans_m(s, machine));
     let lean_m = |at_s: f64| leans_m[(((at_s - late_s) / DT_S).max(0.0) as usize).min(s.len - 1)];
@@ -58,13 +59,14 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         let wheel_m_s = (rolled_at(t1) - rolled_at(t0)) / (t1 - t0);
         let (from, to) = ((t1 / DT_S) as usize, ((t1 + 0.125) / DT_S) as usize);
         let (mut along, mut angle) = (f64::NAN, f64::NAN);
-        if let Some([heading, yaw_rate]) = heading {
+        if let (Some([heading, yaw_rate]), Some(ground)) = (heading, ground) {
             let (sin, cos) = heading.sin_cos();
-            if wheel_m_s.abs() > ROLLING_M_S && flat {
+            let wheel_m_s = wheel_m_s * ground.on_map(heading);
+            if wheel_m_s.abs() > ROLLING_M_S {
                 let moved_m = cos * dx + sin * dy - leaning_m[0];
                 along = wheel_m_s - yaw_rate * lever.y_m - moved_m / (t1 - t0);
             }
-            if wheel_m_s > COURSE_M_S && flat {
+            if wheel_m_s > COURSE_M_S {
                 let antenna = machine.sensors.gnss_antenna_m;
                 let side = yaw_rate * (antenna[0] + lever.x_m);
                 let moved_m = cos * dy - sin * dx - leaning_m[1];

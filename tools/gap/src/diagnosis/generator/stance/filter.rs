@@ -37,6 +37,28 @@ pub(super) fn felt_rad(s: &Signals, machine: &Machine, motion: &Motion) -> [Samp
     [roll.beside_lean_rad(&s.roll_rad), pitch.beside_lean_rad(&s.pitch_rad)]
 }
 
+/// Cosine and sine of the heading as the filters of roll and of pitch have them.
+///
+/// A machine that turns on a slope turns about the slope's normal: its gyroscopes feel no roll and no pitch, and the
+/// filter learns of its new attitude from the accelerometer alone, in a second or two.
+#[must_use]
+pub(super) fn headings_felt(heading_rad: &Samples) -> [[Samples; 2]; 2] {
+    let parts =
+        [f64::cos, f64::sin].map(|part: fn(f64) -> f64| heading_rad.iter().map(move |h| part(*h)));
+    KEEP.map(|keep| {
+        parts.clone().map(|part| {
+            let mut felt = None;
+            let follow = |now: f64| {
+                let last = felt.unwrap_or(now);
+                let next = keep * last + (1.0 - keep) * now;
+                felt = Some(next);
+                next
+            };
+            part.map(follow).collect()
+        })
+    })
+}
+
 /// One angle: what the gyroscope and the accelerometer feel of it.
 struct Felt {
     /// Lean of the front frame, rad.

@@ -12,8 +12,9 @@ use xt28_sim::{Effects, Parts};
 use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
 use super::motion::{lagged, unflickered};
 use crate::diagnosis::generator::driving::climbs;
+use crate::diagnosis::generator::grade::Grade;
 use crate::diagnosis::generator::press::{normal_n, own_n};
-use crate::diagnosis::signals::{Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Rolling over which a hold builds up, m (assumed).
 const YIELDS_M: f64 = 0.001;
@@ -25,6 +26,7 @@ const COMES_TO_REST: usize = 100;
 const SWUNG_M: f64 = 2.0 * YIELDS_M;
 /// Samples from one step to the next.
 const STRIDE: usize = 5;
+const STEP_S: f64 = STRIDE as f64 * DT_S;
 /// Halvings in which the holds are balanced: to a millionth.
 const BISECTIONS: usize = 20;
 
@@ -44,12 +46,14 @@ struct Rim {
 }
 
 impl Holds {
-    /// Holds over a run with what `effects` say of the motors; none where no motor holds.
+    /// Holds over a run with what `effects` say of the motors, on tyres that give way to a force along the ground
+    /// by `creep_m_s_n` m/s/N; none where no motor holds.
     pub(super) fn new(
         s: &Signals,
         machine: &Machine,
         effects: &Effects,
         parts: &Parts,
+        creep_m_s_n: f64,
     ) -> Option<Self> {
         let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm);
         if most_nm.iter().all(|(_, nm)| *nm == 0.0) {
@@ -59,6 +63,7 @@ impl Holds {
         let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
         let pull_nm = mass_kg * GRAVITY_M_S2 * parts.radius_m;
         let resisting = machine.wheels.rolling_resistance / machine.wheels.friction;
+        let ground = Grade::believed(s, effects).unwrap_or_default();
         let (mut held, mut resting) = (PerWheel::splat(0.0), COMES_TO_REST);
         let mut swung_m = 0.0_f64;
         let mut steps = vec![held];
@@ -78,8 +83,12 @@ impl Holds {
                 most_nm[w].abs().min(grip_nm) + resisting * grip_nm
             });
             let pushed_nm: f64 = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
-            let pulled_nm = pull_nm * climbs(s, machine, effects, i);
-            held = balanced(&wanted, &weight_nm, pushed_nm - pulled_nm);
+            let yields = PerWheel::from_fn(|w| {
+                let creeps_m_s = creep_m_s_n * weight_nm[w] / parts.radius_m;
+                1.0 + creeps_m_s * STEP_S / YIELDS_M
+            });
+            let pulled_nm = pull_nm * climbs(s, machine, effects, ground, i);
+            held = balanced(&wanted, &yields, &weight_nm, pushed_nm - pulled_nm);
             // How the wheels were held when they came to rest is not known.
             let is_known = swung_m > SWUNG_M;
             steps.push(if is_known { held } else { PerWheel::splat(0.0) });
@@ -112,12 +121,19 @@ impl Rim {
     }
 }
 
-/// Shares nearest to `wanted`, all less by the same, whose torques come to `sum_nm`.
-fn balanced(wanted: &PerWheel<f64>, weight_nm: &PerWheel<f64>, sum_nm: f64) -> PerWheel<f64> {
-    let less = |by: f64| wanted.map(|share| (share - by).clamp(-1.0, 1.0));
+/// Shares nearest to `wanted`, all less by the same, whose torques come to `sum_nm`. Tyres that creep hold so
+/// many times less as `yields` says.
+fn balanced(
+    wanted: &PerWheel<f64>,
+    yields: &PerWheel<f64>,
+    weight_nm: &PerWheel<f64>,
+    sum_nm: f64,
+) -> PerWheel<f64> {
+    let less = |by: f64| PerWheel::from_fn(|w| ((wanted[w] - by) / yields[w]).clamp(-1.0, 1.0));
     let excess_nm =
         |by: f64| less(by).iter().map(|(w, share)| share * weight_nm[w]).sum::<f64>() - sum_nm;
-    let reach = 1.0 + wanted.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max);
+    let reach = yields.iter().map(|(_, times)| *times).fold(1.0, f64::max)
+        + wanted.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max);
     let (mut low, mut high) = (-reach, reach);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -134,16 +150,25 @@ fn balanced(wanted: &PerWheel<f64>, weight_nm: &PerWheel<f64>, sum_nm: f64) -> P
 mod tests {
     use super::*;
 
+    const RIGID: PerWheel<f64> = PerWheel([1.0; 6]);
+
+    #[test]
+    fn tyres_that_creep_let_go() {
+        let wanted = PerWheel([0.9, 0.9, 0.0, 0.0, -0.9, -0.9]);
+        let held = balanced(&wanted, &PerWheel::splat(3.0), &PerWheel::splat(4e3), 0.0);
+        assert!((held[Wheel::Fr] - 0.3).abs() < 1e-4 && (held[Wheel::Bl] + 0.3).abs() < 1e-4);
+    }
+
     #[test]
     fn wheels_that_want_the_same_move_the_machine_and_are_not_held() {
-        let held = balanced(&PerWheel::splat(3.0), &PerWheel::splat(4e3), 0.0);
+        let held = balanced(&PerWheel::splat(3.0), &RIGID, &PerWheel::splat(4e3), 0.0);
         assert!(held.iter().all(|(_, share)| share.abs() < 1e-4), "{held:?}");
     }
 
     #[test]
     fn wheels_that_want_to_part_are_held_against_each_other() {
         let wanted = PerWheel([2.0, 2.0, 0.0, 0.0, -2.0, -2.0]);
-        let held = balanced(&wanted, &PerWheel::splat(4e3), 0.0);
+        let held = balanced(&wanted, &RIGID, &PerWheel::splat(4e3), 0.0);
         assert!(held[Wheel::Fr] > 0.99 && held[Wheel::Bl] < -0.99, "{held:?}");
         assert!(held[Wheel::Mr].abs() < 1e-4, "{held:?}");
     }
@@ -152,6 +177,6 @@ mod tests {
     fn a_wheel_held_alone_moves_the_machine() {
         let weight = PerWheel::from_fn(|w| if w == Wheel::Fr { 4e3 } else { 0.0 });
         let wanted = PerWheel([2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        assert!(balanced(&wanted, &weight, 0.0)[Wheel::Fr].abs() < 1e-4);
+        assert!(balanced(&wanted, &RIGID, &weight, 0.0)[Wheel::Fr].abs() < 1e-4);
     }
 }

@@ -2,9 +2,9 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
-use super::filter::felt_rad;
+use super::filter::{felt_rad, headings_felt};
 use super::motion::{Motion, lagged};
-use crate::diagnosis::generator::driving::PRESSURE_AT_TORQUE_MAX_PA;
+use crate::diagnosis::generator::driving::motor_nm;
 use crate::diagnosis::generator::loads::is_off_scale;
 use crate::diagnosis::generator::position_control::end_of;
 use crate::diagnosis::instant::{AtWheel, Instant};
@@ -35,7 +35,8 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
     let felt = felt_rad(s, machine, &motion);
     let attitude = [still(&s.roll_rad, &felt[0]), still(&s.pitch_rad, &felt[1])];
     let acceleration = [late(&motion.left_m_s2), late(&motion.ahead_m_s2)];
-    let (heading, doubt, held) = (headings(s, &motion), doubts(s), held_against_arms(s));
+    let heading = headings_felt(&headings(s, &motion)).map(|felt| felt.map(|part| late(&part)));
+    let (doubt, held) = (doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
     (STRIDE / 2..s.len)
         .step_by(STRIDE)
@@ -48,7 +49,7 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
             joint_rad: [joint[0][i], joint[1][i]],
             attitude_rad: [attitude[0][i], attitude[1][i]],
             acceleration_m_s2: [acceleration[0][i], acceleration[1][i]],
-            heading_rad: heading[i],
+            heading: [0, 1].map(|angle| [0, 1].map(|part| heading[angle][part][i])),
             wheels: PerWheel::from_fn(|w| wheels[w](i)),
         })
         .collect()
@@ -74,13 +75,9 @@ fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize)
     }
 }
 
-/// Torque of the wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
+/// Torque of the wheel's motor, Nm, sample by sample.
 pub(super) fn pump_torque_nm(s: &Signals, machine: &Machine, wheel: Wheel) -> Samples {
-    let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
-    let [back, forward] = if first { [0, 1] } else { [2, 3] };
-    let (back, forward) = (&s.pump_pressure_pa[back], &s.pump_pressure_pa[forward]);
-    let full = machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
-    forward.iter().zip(back).map(|(f, b)| (f - b) * full).collect()
+    (0..s.len).map(|i| motor_nm(s, machine, wheel, i)).collect()
 }
 
 /// Whether the pressures of a cylinder say all that its arm carries: they are on their scale, and no end

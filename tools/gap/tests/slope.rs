@@ -6,7 +6,7 @@ mod made_up;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use made_up::{series, swinging};
+use made_up::{series, signals, swinging};
 use xt28_gap::diagnosis::{Generator, Residual, Signal, Signals};
 use xt28_gap::{Channel, Decoder, FieldLog, Mapping, Replay, Terrain};
 use xt28_machine::{Machine, Wheel};
@@ -31,10 +31,11 @@ fn a_slope_that_is_known_is_one_that_is_believed_in() {
     let [grade_x_rad, grade_y_rad] = RISE.map(f64::atan);
     let believed =
         Effects { slope: TerrainSlope { grade_x_rad, grade_y_rad }, ..Effects::default() };
-    let run = |ground| Signals::of_series("made up", &all, 20.0, ground).unwrap();
+    let [level] = signals(&all);
+    let slope = Signals::of_series("made up", &all, level.duration_s(), sloping()).unwrap();
     for generator in [Generator::Stance, Generator::Drive, Generator::Travel] {
-        let known = generator.residuals(&run(sloping()), &machine, &Effects::default());
-        let other = generator.residuals(&run(Terrain::Flat), &machine, &believed);
+        let known = generator.residuals(&slope, &machine, &Effects::default());
+        let other = generator.residuals(&level, &machine, &believed);
         for (known, other) in known.iter().zip(&other) {
             for (a, b) in known.values.iter().zip(&other.values) {
                 let alike = (a - b).abs() < 1e-6 || (a.is_nan() && b.is_nan());

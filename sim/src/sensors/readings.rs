@@ -50,7 +50,7 @@ impl Sensors {
                 |e, pa| e.pressure_scale.factor * pa + e.pressure_bias.bias_pa,
                 &state.pressure_a_pa,
             ),
-            pressure_b_pa: each(|e, pa| e.pressure_scale.factor * pa, &state.pressure_b_pa),
+            pressure_b_pa: each(|e, pa| e.pressure_scale.rod_factor() * pa, &state.pressure_b_pa),
             wheel_speed_rad_s: each(
                 |e, rad_s| e.wheel_speed_scale.factor * rad_s,
                 &state.wheel_speed_rad_s,
@@ -118,6 +118,14 @@ mod tests {
         assert!((scaled.pressure_b_pa[Wheel::Ml] - 5.5e5).abs() < 1e-6);
         assert_eq!(scaled.pressure_b_pa[Wheel::Mr], exact.pressure_b_pa[Wheel::Mr]);
         assert_eq!(scaled.stroke_m, exact.stroke_m);
+    }
+
+    #[test]
+    fn a_bore_sensor_alone_shows_on_the_bore_alone() {
+        let (exact, scaled) =
+            with("name = \"pressure-scale\"\nscope = \"ML\"\nfactor = 1.1\nrod_share = 0.0");
+        assert!((scaled.pressure_a_pa[Wheel::Ml] - 8.8e6).abs() < 1e-6);
+        assert_eq!(Readings { pressure_a_pa: exact.pressure_a_pa, ..scaled }, exact);
     }
 
     #[test]

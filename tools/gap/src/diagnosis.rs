@@ -16,6 +16,7 @@ mod evidence;
 mod excitation;
 mod floor;
 mod floors;
+mod gauge;
 mod generator;
 mod how_far;
 mod hypothesis;

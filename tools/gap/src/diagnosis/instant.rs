@@ -36,6 +36,8 @@ pub(super) struct AtWheel {
     pub(super) stroke_m: f64,
     /// Load of the cylinder as read, N.
     pub(super) load_n: f64,
+    /// What its rod chamber shows against the rod, N.
+    pub(super) rod_n: f64,
     /// Motor torque that the circuit's pressures make, forward, Nm.
     pub(super) torque_nm: f64,
     /// Share of the rolling resistance that acts, -1 to 1: against the wheel's turning.

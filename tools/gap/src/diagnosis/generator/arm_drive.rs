@@ -8,6 +8,7 @@ use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
 use crate::diagnosis::belief::Course;
+use crate::diagnosis::gauge::Gauge;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time over which the block forgets where it parted from the machine, s. Long enough that a creep of
@@ -20,14 +21,21 @@ const SHUT: f64 = 0.9;
 /// Share of a tolerance below which a parameter is where it was.
 const ROUNDING: f64 = 1e-3;
 
+/// The sensors of one arm as believed.
+#[derive(Clone, Copy)]
+struct Sensing {
+    sensors: WheelEffects,
+    gauge: Gauge,
+}
+
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
     signals: &'a Signals,
     wheel: Wheel,
     arm: Arm,
-    sensors: WheelEffects,
+    sensing: Sensing,
     /// Sensors before a sample, where they were others.
-    before: Option<(usize, WheelEffects)>,
+    before: Option<(usize, Sensing)>,
     /// Samples at which the arm becomes another, so that its oil begins anew.
     anew: [Option<usize>; 2],
     loads: Loads,
@@ -49,7 +57,7 @@ impl<'a> ArmDrive<'a> {
             signals,
             wheel,
             arm: Arm::new(machine, &smooth),
-            sensors: effects.wheels[wheel],
+            sensing: Sensing::new(machine.arms.area_bore_m2, effects.wheels[wheel]),
             before: None,
             anew: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
@@ -66,7 +74,8 @@ impl<'a> ArmDrive<'a> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
         let from = sample(course.from_s);
-        self.before = (from > 0).then_some((from, course.before.wheels[self.wheel]));
+        let before = Sensing::new(self.area_bore_m2, course.before.wheels[self.wheel]);
+        self.before = (from > 0).then_some((from, before));
         let becomes =
             |at: usize, [was, is]: [&Effects; 2]| is_another_arm(was, is, self.wheel).then_some(at);
         let sound = Effects::default();
@@ -78,10 +87,10 @@ impl<'a> ArmDrive<'a> {
     }
 
     /// The sensors at sample `i`.
-    const fn sensors(&self, i: usize) -> &WheelEffects {
+    const fn sensing(&self, i: usize) -> &Sensing {
         match &self.before {
             Some((from, before)) if i < *from => before,
-            _ => &self.sensors,
+            _ => &self.sensing,
         }
     }
 
@@ -103,7 +112,7 @@ impl<'a> ArmDrive<'a> {
         let mut seen_n = self.loads.reading_n[0];
         let (mut error_m, mut m_n) = (0.0, 0.0);
         let step = |i: usize| {
-            let (input, s) = (self.input(i), self.sensors(i));
+            let (input, s) = (self.input(i), &self.sensing(i).sensors);
             if self.anew.contains(&Some(i)) {
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
                 seen_n = self.loads.reading_n[i];
@@ -151,7 +160,7 @@ impl<'a> ArmDrive<'a> {
     fn input(&self, i: usize) -> ArmInput {
         let stroke = &self.signals.stroke_m[self.wheel];
         let truth = |i: usize| {
-            let s = self.sensors(i);
+            let s = &self.sensing(i).sensors;
             (stroke[i] - s.stroke_bias.bias_m) / s.stroke_scale.factor
         };
         let (now_m, before_m) = (truth(i), truth(i.saturating_sub(1)));
@@ -159,21 +168,25 @@ impl<'a> ArmDrive<'a> {
         let stroke_rate_m_s = (now_m - before_m) / DT_S;
         ArmInput {
             command: self.signals.opening[self.wheel][i],
-            load_n: self.load_n(i, self.loads.oil_n[i]),
+            load_n: self.sensing(i).gauge.load_n(self.loads.oil_n[i], self.loads.rod_oil_n[i]),
             motion: CylinderMotion { stroke_m: now_m, stroke_rate_m_s },
         }
     }
 
     /// Load that the sensors show as `reading_n` at sample `i`.
     fn load_n(&self, i: usize, reading_n: f64) -> f64 {
-        let s = self.sensors(i);
-        (reading_n - s.pressure_bias.bias_pa * self.area_bore_m2) / s.pressure_scale.factor
+        self.sensing(i).gauge.load_n(reading_n, self.loads.rod_n[i])
     }
 
     /// Load that the sensors show at sample `i` for one of `load_n`.
     fn read(&self, i: usize, load_n: f64) -> f64 {
-        let s = self.sensors(i);
-        s.pressure_scale.factor * load_n + s.pressure_bias.bias_pa * self.area_bore_m2
+        self.sensing(i).gauge.reading_n(load_n, self.loads.rod_n[i])
+    }
+}
+
+impl Sensing {
+    fn new(area_bore_m2: f64, sensors: WheelEffects) -> Self {
+        Self { sensors, gauge: Gauge::new(area_bore_m2, &sensors) }
     }
 }
 

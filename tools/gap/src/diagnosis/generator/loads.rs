@@ -3,6 +3,7 @@
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::WheelEffects;
 
+use crate::diagnosis::gauge::rod_n;
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// What the ECU's pressure filter keeps of its last output a tick (facts 3.2): 0.164 s.
@@ -26,6 +27,10 @@ pub(super) struct Loads {
     pub(super) reading_n: Samples,
     /// With the filter undone, N.
     pub(super) oil_n: Samples,
+    /// What the rod chamber shows against the rod, as read, N.
+    pub(super) rod_n: Samples,
+    /// The same with the filter undone, N.
+    pub(super) rod_oil_n: Samples,
     /// Whether a chamber was drained: the piston ran ahead of its oil, so that what came in came past
     /// the valve, and has not come to rest since; or whether its sensor was off its scale. Empty where
     /// no pressures are logged.
@@ -68,7 +73,9 @@ impl Loads {
             is_drained[i] |= is_drained[i - 1] && rate_m_s[i].abs() > SLOW_M_S;
         }
         let oil_n = undone(&reading_n, is_new);
-        Self { reading_n, oil_n, is_drained }
+        let rod_n = (0..signals.len).map(|i| rod_n(signals, machine, wheel, i)).collect();
+        let rod_oil_n = undone(&rod_n, is_new);
+        Self { reading_n, oil_n, rod_n, rod_oil_n, is_drained }
     }
 }
 

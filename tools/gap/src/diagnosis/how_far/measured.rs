@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts, Terrain, VehicleState};
 
+use crate::diagnosis::gauge::{Gauge, rod_n};
 use crate::diagnosis::generator::PRESSURE_AT_TORQUE_MAX_PA;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -163,9 +164,9 @@ impl<'a> Measured<'a> {
             }),
             stroke_rate_m_s: PerWheel::from_fn(|w| s.stroke_rate_m_s[w][i] / scale[w]),
             cylinder_force_n: PerWheel::from_fn(|w| {
-                let read_n = s.cylinder_load_n[w][(i + LOAD_LATE).min(s.len - 1)];
-                let bias_n = e[w].pressure_bias.bias_pa * self.machine.arms.area_bore_m2;
-                (read_n - bias_n) / e[w].pressure_scale.factor
+                let at = (i + LOAD_LATE).min(s.len - 1);
+                let gauge = Gauge::new(self.machine.arms.area_bore_m2, &e[w]);
+                gauge.load_n(s.cylinder_load_n[w][at], rod_n(s, self.machine, w, at))
             }),
             wheel_speed_rad_s: PerWheel::from_fn(|w| {
                 mean(&s.wheel_speed_rad_s[w], i) / e[w].wheel_speed_scale.factor

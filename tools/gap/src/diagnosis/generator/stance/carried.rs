@@ -6,6 +6,7 @@ use xt28_sim::{Effects, Parts};
 use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
+use crate::diagnosis::gauge::Gauge;
 use crate::diagnosis::generator::press::own_n;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
@@ -15,8 +16,8 @@ pub(super) struct Carrier<'a> {
     wheel: Wheel,
     parts: &'a Parts,
     effects: &'a Effects,
-    /// Area by which a bore pressure makes a load, m².
-    area_m2: f64,
+    /// The sensors of its pressures.
+    gauge: Gauge,
     /// Weight of wheel and arm that the pivot does not carry, N.
     own_n: f64,
     /// Rolling resistance per load, m.
@@ -40,7 +41,7 @@ impl<'a> Carrier<'a> {
             wheel,
             parts,
             effects,
-            area_m2: machine.arms.area_bore_m2,
+            gauge: Gauge::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
             own_n: own_n(machine, parts, wheel),
             resistance_m: (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m,
             friction: machine.wheels.friction,
@@ -79,10 +80,10 @@ impl<'a> Carrier<'a> {
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
     /// `drop + radius` below the pivot: the motor's torque is between wheel and arm.
     fn moments(&self, instant: &Instant) -> Moments {
-        let AtWheel { stroke_m, load_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
+        let AtWheel { stroke_m, load_n, rod_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
         let e = &self.effects.wheels[self.wheel];
         let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
-        let oil_n = (load_n - e.pressure_bias.bias_pa * self.area_m2) / e.pressure_scale.factor;
+        let oil_n = self.gauge.load_n(load_n, rod_n);
         let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;

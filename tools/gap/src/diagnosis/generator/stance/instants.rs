@@ -4,6 +4,7 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 
 use super::filter::{felt_rad, headings_felt};
 use super::motion::{Motion, lagged};
+use crate::diagnosis::gauge::rod_n;
 use crate::diagnosis::generator::driving::motor_nm;
 use crate::diagnosis::generator::loads::is_off_scale;
 use crate::diagnosis::generator::position_control::end_of;
@@ -64,12 +65,14 @@ fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize)
     let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
     let stroke_m = late(s.stroke_m[wheel].clone());
     let load_n = s.cylinder_load_n[wheel].clone();
+    let rod_n: Samples = (0..s.len).map(|i| rod_n(s, machine, wheel, i)).collect();
     let torque_nm = late(pump_torque_nm(s, machine, wheel));
     let speed_rad_s = &s.wheel_speed_rad_s[wheel];
     let rolls = late(speed_rad_s.iter().map(|speed| (speed / FADES_RAD_S).tanh()).collect());
     move |i| AtWheel {
         stroke_m: stroke_m[i],
         load_n: load_n[i],
+        rod_n: rod_n[i],
         torque_nm: torque_nm[i],
         rolls: rolls[i],
     }

@@ -123,6 +123,23 @@ fn every_two_wheels_swapped_are_found() {
     }
 }
 
+/// A run in which the arms of an axle go together hides no other in which they do not.
+#[test]
+fn wheels_swapped_are_found_in_the_one_run_that_tells_them_apart() {
+    let large = |t: f64| 0.17 + 0.1 * (TAU * 0.05 * t).sin();
+    let mut alike = swinging();
+    for w in [Wheel::Fr, Wheel::Fl] {
+        alike.insert(Channel::TargetStroke(w), series(large));
+        alike.insert(Channel::Stroke(w), series(|t| large(t - 1.18)));
+    }
+    let mut apart = swinging();
+    swap(&mut apart, [Wheel::Fr, Wheel::Fl].map(Channel::Stroke));
+    let ([alike], [apart]) = (signals(&alike), signals(&apart));
+    assert_eq!(swapped_wheels(std::slice::from_ref(&alike)), None);
+    let found = swapped_wheels(&[alike, apart]).expect("they are swapped");
+    assert_eq!(found.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
+}
+
 /// A stuck arm, a slow one and one that goes the wrong way are faults, not an order of wheels.
 #[test]
 fn a_fault_of_an_arm_is_no_swap() {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_gap::diagnosis::{
-    Details, Diagnosis, Inquiry, Progress, Verdict as Answer, next_drive, untested_drive,
+    Details, Diagnosis, FieldRun, Inquiry, Progress, Verdict as Answer, next_drive, untested_drive,
 };
 use xt28_gap::page::Subject;
 use xt28_gap::{About, Choice, Decoder, Known, Mapping, RunSet, Use, page};
@@ -30,7 +30,8 @@ use crate::{Failure, Verdict};
 /// RUN is a file name with or without its ending, a scenario of about.toml, or a number: of a log in the
 /// order given, or that in run-3-mixed.log; one that may be either is refused. --fit alone holds out all
 /// other runs, --held alone fits on all others; with both, runs that neither names are left out. Without
-/// --fit and --held, about.toml says what is fitted on; without it, the last third is held out.
+/// --fit and --held, about.toml says what is fitted on; without it a third is held out, the last
+/// runs that show no effect the others do not.
 #[derive(Args)]
 pub(crate) struct Diagnose {
     /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames
@@ -138,12 +139,17 @@ impl Diagnose {
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let choice = set.choose(&self.fit, &self.held)?;
-        let mut notes = vec![split(&set, &choice)];
         let (about, machine_file) = (about.as_deref(), self.machine.as_deref());
         let given = Given { about, dbc: &self.dbc, machine: machine_file };
-        notes.extend(remarks(&set, &given)?);
+        let remarks = remarks(&set, &given)?;
+        let left: Vec<String> = left_out(&set, &choice);
         let mut inquiry =
             Inquiry::new(machine, set.into_field_runs(&choice, self.accept_wheel_order)?);
+        if !choice.is_advised {
+            inquiry.hold_out_what_others_show();
+        }
+        let mut notes = vec![split(&inquiry, &left, &choice.why)];
+        notes.extend(remarks);
         inquiry.believed = believed.effects();
         inquiry.how_far = !self.no_how_far;
         Ok((inquiry, notes))
@@ -217,19 +223,22 @@ impl Diagnose {
     }
 }
 
+/// Files of the runs that are neither fitted nor held out.
+fn left_out(set: &RunSet, choice: &Choice) -> Vec<String> {
+    let runs = set.runs().iter().zip(&choice.uses).filter(|(_, used)| **used == Use::Left);
+    runs.map(|(run, _)| run.file.clone()).collect()
+}
+
 /// Which runs were fitted on, and who chose so.
-fn split(set: &RunSet, choice: &Choice) -> String {
-    let of = |wanted: Use| {
-        let runs = set.runs().iter().zip(&choice.uses).filter(|(_, used)| **used == wanted);
-        let files: Vec<&str> = runs.map(|(run, _)| run.file.as_str()).collect();
+fn split(inquiry: &Inquiry, left: &[String], why: &str) -> String {
+    let of = |fit: bool| {
+        let runs = inquiry.runs.iter().filter(|run| run.fit == fit);
+        let files: Vec<String> = runs.map(FieldRun::file).collect();
         if files.is_empty() { "none".to_owned() } else { files.join(", ") }
     };
-    let left = if choice.uses.contains(&Use::Left) {
-        format!("; left out: {}", of(Use::Left))
-    } else {
-        String::new()
-    };
-    format!("Fitted on {}; held out: {}{left} ({}).", of(Use::Fit), of(Use::Held), choice.why)
+    let left =
+        if left.is_empty() { String::new() } else { format!("; left out: {}", left.join(", ")) };
+    format!("Fitted on {}; held out: {}{left} ({why}).", of(true), of(false))
 }
 
 /// A bar over the whole diagnosis; indicatif draws it on a terminal only.

@@ -44,6 +44,9 @@ fn main() -> Result<(), String> {
         }
         let findings = inquiry.findings(&|_| ());
         println!("{}: left over {:.2}", case.name(), findings.left_over());
+        if let Some((times, why)) = findings.left_over_held() {
+            println!("  held out {times:.2}: {why}");
+        }
         print(&findings);
         print_tolerances("beside the best", findings.shifts.clone());
         let runs: Vec<Signals> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();

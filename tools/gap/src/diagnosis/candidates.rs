@@ -148,10 +148,29 @@ impl<'a> Docket<'a> {
         self.fit.unbent()
     }
 
-    /// What is left on each signal of all runs once `fits` are believed.
+    /// What is left on each signal of the runs fitted once `fits` are believed.
     pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
         self.fit.left(Belief { effects: &effects, from_s })
+    }
+
+    /// The same of the runs held out, with tolerances at their best there; nothing without any.
+    pub(super) fn left_held(&self, fits: &[&Fit]) -> Vec<Left> {
+        let (effects, from_s) = self.believing(fits);
+        let held = self.held.as_ref();
+        held.map_or(Vec::new(), |held| held.left(Belief { effects: &effects, from_s }))
+    }
+
+    /// What each signal of the runs held out leaves with tolerances where they are believed to be.
+    pub(super) fn unbent_held(&self) -> Vec<Left> {
+        self.held.as_ref().map_or(Vec::new(), Evidence::unbent)
+    }
+
+    /// Where the tolerances go in the runs held out once `fits` are believed, each by how many of its own.
+    pub(super) fn shifts_held(&self, fits: &[&Fit]) -> Vec<(Knob, f64)> {
+        let (effects, from_s) = self.believing(fits);
+        let held = self.held.as_ref();
+        held.map_or(Vec::new(), |held| held.shifts(Belief { effects: &effects, from_s }))
     }
 
     /// How much of what is left there is what `fits` and the base explain of what `nothing` leaves, moved

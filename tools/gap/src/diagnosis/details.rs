@@ -75,7 +75,7 @@ impl Details {
                 .runs
                 .iter()
                 .map(|run| RunLine {
-                    name: file_name(run.log.name()),
+                    name: run.file(),
                     seconds: run.signals.duration_s(),
                     frames: run.log.frames(),
                     fit: run.fit,
@@ -123,9 +123,4 @@ const fn wheel_of(generator: Generator) -> Option<Wheel> {
         Generator::ArmStroke(wheel) | Generator::ArmEcu(wheel) => Some(wheel),
         _ => None,
     }
-}
-
-/// The last part of a path, whichever way its folders are parted.
-pub(super) fn file_name(path: &str) -> String {
-    path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
 }

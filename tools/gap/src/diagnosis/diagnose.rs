@@ -7,9 +7,9 @@ use super::candidates::{Candidate, Docket};
 use super::evidence::Left;
 use super::excitation::Shown;
 use super::how_far::HowFar;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
-use super::judgement::{Findings, judge};
+use super::judgement::{Findings, Held, judge};
 use super::knob::{Knob, SHIFT_MAX};
 use super::overlap::own_share;
 use super::signals::Signals;
@@ -79,25 +79,23 @@ impl Inquiry {
         let Some(best) = single.first() else {
             let (after, shifts) = (first.left(&[]), first.shifts(&[]));
             let apart = after.clone();
-            return Findings { unbent, alone, apart, after, shifts, ..Findings::default() };
+            let held = first.held(&first, &[]);
+            return Findings { unbent, alone, apart, after, held, shifts, ..Findings::default() };
         };
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single, &shown);
         tell("looking at what is left", 0.7);
         let (pair, after) = owned(pair, &first, &beside);
         let nothing = &self.believed;
-        let (believed, after, shifts, echoes) = match pair.first() {
-            Some([one, second]) => {
-                let (both, second) = (vec![&one.fit, &second.fit], &[&second.fit]);
-                (both, after, beside.shifts(second), beside.echoes(second, nothing))
-            }
-            None => {
-                let one = &[&best.fit];
-                (one.to_vec(), first.left(one), first.shifts(one), first.echoes(one, nothing))
-            }
+        let (believed, court, last) = match pair.first() {
+            Some([one, second]) => (vec![&one.fit, &second.fit], &beside, &second.fit),
+            None => (vec![&best.fit], &first, &best.fit),
         };
+        let after = if pair.is_empty() { first.left(&[last]) } else { after };
+        let (shifts, echoes) = (court.shifts(&[last]), court.echoes(&[last], nothing));
+        let held = first.held(court, &[last]);
         let apart = first.apart(&believed, SHIFT_MAX);
-        Findings { unbent, alone, apart, single, pair, after, echoes, shifts }
+        Findings { unbent, alone, apart, single, pair, after, echoes, held, shifts }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.
@@ -141,6 +139,17 @@ impl Inquiry {
         }
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
         (pairs.collect(), court)
+    }
+}
+
+impl Docket<'_> {
+    /// What the runs held out say of `fits`, which were found in `court`.
+    fn held(&self, court: &Docket<'_>, fits: &[&Fit]) -> Held {
+        Held {
+            unbent: self.unbent_held(),
+            after: court.left_held(fits),
+            shifts: court.shifts_held(fits),
+        }
     }
 }
 

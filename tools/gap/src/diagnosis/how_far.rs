@@ -31,8 +31,8 @@ pub use refit::Refit;
 
 use self::squares::Squares;
 use self::twin::{Course, Stretch};
-use super::details::file_name;
 use super::inquiry::Inquiry;
+use super::inquiry::file_name;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
 

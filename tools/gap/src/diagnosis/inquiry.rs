@@ -5,6 +5,7 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect};
 
+use super::excitation::not_testable;
 use super::generator::share_resistance;
 use super::noise::with_noise_of;
 use super::signals::Signals;
@@ -45,6 +46,12 @@ impl FieldRun {
         let signals = Signals::new(&log, terrain)?;
         Ok(Self { log, signals, fit })
     }
+
+    /// Name of its log's file, without folders.
+    #[must_use]
+    pub fn file(&self) -> String {
+        file_name(self.log.name())
+    }
 }
 
 impl Inquiry {
@@ -65,10 +72,43 @@ impl Inquiry {
         }
     }
 
+    /// Of runs that nobody chose a use for, holds out a third: the last ones without which the others show
+    /// every effect that all of them do. A fault that only runs held out show is fitted on nothing, and so
+    /// never named.
+    pub fn hold_out_what_others_show(&mut self) {
+        let count = self.runs.len();
+        let most = if count < 2 { 0 } else { count.div_ceil(3) };
+        self.runs.iter_mut().for_each(|run| run.fit = true);
+        let least = self.not_shown();
+        let mut held = 0;
+        for i in (0..count).rev() {
+            if held == most {
+                break;
+            }
+            self.runs[i].fit = false;
+            if self.not_shown() > least {
+                self.runs[i].fit = true;
+            } else {
+                held += 1;
+            }
+        }
+    }
+
+    /// How many effects the runs that are fitted cannot show.
+    fn not_shown(&self) -> usize {
+        let fitted = self.runs.iter().filter(|run| run.fit).map(|run| &run.signals);
+        not_testable(fitted, &self.machine, &self.catalogue).len()
+    }
+
     /// The same without `effect` in the catalogue: what it does must then come out as unknown.
     #[must_use]
     pub fn without(mut self, effect: &Effect) -> Self {
         self.catalogue.retain(|other| *other != effect);
         self
     }
+}
+
+/// The last part of a path, whichever way its folders are parted.
+pub(super) fn file_name(path: &str) -> String {
+    path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
 }

@@ -12,14 +12,13 @@ mod objection;
 mod places;
 
 use super::candidates::Candidate;
-use super::details::file_name;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::floors::Floors;
 use super::hypothesis::Fit;
-use super::inquiry::Inquiry;
+use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
-use super::verdict::{Diagnosis, ShareOf, Verdict};
+use super::verdict::{Diagnosis, NotTestable, ShareOf, Verdict};
 use super::wheel_order::axles_alike;
 use beginning::is_told;
 use causes::causes;
@@ -49,7 +48,20 @@ pub struct Findings {
     pub after: Vec<Left>,
     /// How much of that is what they explain, moved in time.
     pub echoes: Vec<Echo>,
+    /// The runs that were held out.
+    pub held: Held,
     /// Where the tolerances go beside the best cause or pair, each by how many of its own.
+    pub shifts: Vec<(Knob, f64)>,
+}
+
+/// What runs that were held out say of the best cause or pair; nothing where there are none.
+#[derive(Clone, Debug, Default)]
+pub struct Held {
+    /// [`Findings::unbent`] of them.
+    pub unbent: Vec<Left>,
+    /// [`Findings::after`] of them, tolerances at their best there.
+    pub after: Vec<Left>,
+    /// [`Findings::shifts`] of them.
     pub shifts: Vec<(Knob, f64)>,
 }
 
@@ -60,6 +72,13 @@ impl Findings {
     #[must_use]
     pub fn left_over(&self) -> f64 {
         self.objection().times
+    }
+
+    /// The same of the runs held out alone, and what speaks loudest there; nothing without any.
+    #[must_use]
+    pub fn left_over_held(&self) -> Option<(f64, String)> {
+        let loudest = self.held_left().max_by(|a, b| a.times.total_cmp(&b.times))?;
+        Some((loudest.times, loudest.why))
     }
 
     /// The best pair, or the best cause where one is enough.
@@ -85,7 +104,6 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
         cause.begins = None;
     }
-    let runs = inquiry.runs.iter().map(|run| &run.signals);
     let verdict = if any < 0.5 {
         Verdict::None
     } else if unknown > 0.5 {
@@ -95,7 +113,12 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     };
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
-    let places = places(apart, &findings.after);
+    let held_speak = verdict == Verdict::Unknown && findings.objection().is_held;
+    let (apart, after) = match &findings.held {
+        held if held_speak => (&held.unbent, &held.after),
+        _ => (apart, &findings.after),
+    };
+    let places = places(apart, after);
     let objection = findings.objection().at.filter(|_| verdict == Verdict::Unknown);
     let mut diagnosis = Diagnosis {
         verdict,
@@ -109,7 +132,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         held_out_runs: held_out_runs(inquiry),
         looked_ahead: false,
         next: None,
-        not_testable: not_testable(runs, &inquiry.machine, &inquiry.catalogue),
+        not_testable: not_shown(inquiry, |run| run.fit),
         notes: notes(inquiry, findings, verdict),
         log_faults: log_faults(inquiry),
         seconds: 0.0,
@@ -118,6 +141,12 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();
     diagnosis.not_testable.retain(|one| !stood.contains(&one.effect));
     diagnosis
+}
+
+/// The effects that those runs cannot show that `are` asked for.
+fn not_shown(inquiry: &Inquiry, are: impl Fn(&FieldRun) -> bool + Clone) -> Vec<NotTestable> {
+    let runs = inquiry.runs.iter().filter(|run| are(run)).map(|run| &run.signals);
+    not_testable(runs, &inquiry.machine, &inquiry.catalogue)
 }
 
 /// Every fault of every log.
@@ -129,7 +158,7 @@ fn log_faults(inquiry: &Inquiry) -> Vec<String> {
 /// File names of the runs that were not fitted.
 fn held_out_runs(inquiry: &Inquiry) -> Vec<String> {
     let held = inquiry.runs.iter().filter(|run| !run.fit);
-    held.map(|run| file_name(run.log.name())).collect()
+    held.map(FieldRun::file).collect()
 }
 
 fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
@@ -137,9 +166,19 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
     if held_out_runs(inquiry).is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
+    let shown = not_shown(inquiry, |_| true);
+    let held_alone = not_shown(inquiry, |run| run.fit).into_iter().map(|one| one.effect.name);
+    let held_alone: Vec<_> =
+        held_alone.filter(|name| shown.iter().all(|one| one.effect.name != *name)).collect();
+    if !held_alone.is_empty() {
+        notes.push(format!(
+            "only runs that were held out can show {}: fit one of them to have it judged",
+            held_alone.join(", ")
+        ));
+    }
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
-    if !alike.is_empty() && verdict != Verdict::None {
+    if !alike.is_empty() {
         notes.push(format!(
             "the arms of one axle ({}) are never commanded apart: whether left and right are in their \
              places there is as the mapping has it",
@@ -152,12 +191,16 @@ fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String
             format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
         })
         .collect();
-    if verdict == Verdict::Unknown && !believed.is_empty() {
+    if verdict == Verdict::Unknown {
         let Objection { times, why, .. } = findings.objection();
+        let best = if believed.is_empty() {
+            "nothing in the catalogue explains anything, but something is the matter".to_owned()
+        } else {
+            let best = believed.join(" beside ");
+            format!("{best} fits best of all in the catalogue, but is not believed")
+        };
         notes.push(format!(
-            "{} fits best of all in the catalogue, but is not believed, because {why}: {times:.1} times \
-             the most that a right answer would",
-            believed.join(" beside ")
+            "{best}, because {why}: {times:.1} times the most that a right answer would"
         ));
     }
     notes

@@ -12,9 +12,9 @@ mod manoeuvre;
 use rayon::prelude::*;
 use xt28_sim::{Effects, Solver, Terrain};
 
-use super::details::file_name;
 use super::generator::Generator;
 use super::inquiry::Inquiry;
+use super::inquiry::file_name;
 use super::signals::Signals;
 use super::verdict::{Cause, Diagnosis, Drive, Next, WORTH_TELLING};
 use crate::{FieldLog, GapError, Replay};

@@ -106,7 +106,15 @@ fn pressures_off_n(runs: &[Signals], wheel: Wheel, other: Wheel) -> f64 {
 
 type Of<'a> = &'a dyn Fn(&Signals, Wheel) -> Samples;
 
+/// Over all runs, then run by run: in most scripts the arms of an axle go together, and a run in which they
+/// do hides one in which they do not.
 fn compare(runs: &[Signals], between: [&'static str; 2], cause: Of, effect: Of) -> Option<Swap> {
+    let each = runs.iter().map(std::slice::from_ref);
+    let mut sets = std::iter::once(runs).chain(each);
+    sets.find_map(|runs| compared(runs, between, cause, effect))
+}
+
+fn compared(runs: &[Signals], between: [&'static str; 2], cause: Of, effect: Of) -> Option<Swap> {
     let (causes, effects) = (gather(runs, cause), gather(runs, effect));
     let r = PerWheel::from_fn(|w| PerWheel::from_fn(|v| correlation(&causes[w], &effects[v])));
     let follower = |w: Wheel| {

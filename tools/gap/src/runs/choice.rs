@@ -10,6 +10,8 @@ pub struct Choice {
     pub uses: Vec<Use>,
     /// Who chose so, in one sentence.
     pub why: String,
+    /// Whether somebody did: neither the command line nor `about.toml` says anything otherwise.
+    pub is_advised: bool,
 }
 
 /// What a run is for.
@@ -26,7 +28,7 @@ pub enum Use {
 impl RunSet {
     /// The runs named in `fit` are fitted on, those in `held` are held out. With one of the two
     /// empty, the rest is for the other; with both empty it is as `about.toml` advises, else the last
-    /// third is held out. A run goes by file name (with or without its endings), by its place among
+    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings), by its place among
     /// the logs from 1, or by its scenario, which may be several runs.
     ///
     /// # Errors
@@ -55,7 +57,7 @@ impl RunSet {
                     _ => Use::Left,
                 };
                 let uses = (0..self.runs().len()).map(used).collect();
-                Choice { uses, why: "as asked on the command line".to_owned() }
+                Choice { uses, why: "as asked on the command line".to_owned(), is_advised: true }
             }
         };
         if choice.uses.contains(&Use::Fit) {
@@ -71,7 +73,8 @@ impl RunSet {
         let advised = |run: &KnownRun| run.advised == Some(true);
         if runs.iter().any(advised) {
             let uses = runs.iter().map(|run| if advised(run) { Use::Fit } else { Use::Held });
-            return Choice { uses: uses.collect(), why: "as about.toml advises".to_owned() };
+            let why = "as about.toml advises".to_owned();
+            return Choice { uses: uses.collect(), why, is_advised: true };
         }
         let held_from = match runs.len() {
             0 | 1 => runs.len(),
@@ -81,9 +84,10 @@ impl RunSet {
         let why = if runs.len() < 2 {
             "there is only one run, so nothing is held out to judge a cause on"
         } else {
-            "nobody said which, so the last third of the runs is held out"
+            "nobody said which: a third is held out, the last that show no effect the others do not"
         };
-        Choice { uses: (0..runs.len()).map(used).collect(), why: why.to_owned() }
+        let uses = (0..runs.len()).map(used).collect();
+        Choice { uses, why: why.to_owned(), is_advised: false }
     }
 
     fn file(&self, i: usize) -> &str {

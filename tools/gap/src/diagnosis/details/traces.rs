@@ -1,6 +1,6 @@
 //! A few seconds-by-seconds pictures of where the gap is largest, before and after.
 
-use super::{Pair, STEP_S, file_name, rms};
+use super::{Pair, STEP_S, rms};
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::inquiry::Inquiry;
@@ -70,12 +70,7 @@ fn trace(inquiry: &Inquiry, pair: &Pair, i: usize) -> Trace {
     };
     let error = |values: &Samples| values.iter().map(|value| value * per_floor).collect();
     Trace {
-        title: format!(
-            "{}: {}, {}",
-            file_name(run.log.name()),
-            pair.generator,
-            before.signal.with_wheel()
-        ),
+        title: format!("{}: {}, {}", run.file(), pair.generator, before.signal.with_wheel()),
         unit,
         measured: measured.map(|samples| thin(&samples, per_si)),
         before: error(&before.values),

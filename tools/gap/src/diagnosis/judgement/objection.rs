@@ -2,11 +2,12 @@
 //! tolerances that would have to bend.
 
 use super::super::candidates::Candidate;
-use super::super::evidence::Echo;
+use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
-use super::Findings;
+use super::super::knob::Knob;
 use super::allowed::{echoing, excess};
+use super::{Findings, Held};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
 /// is not in the catalogue bends them by more.
@@ -17,6 +18,10 @@ const SHIFTS_SHARE: f64 = 0.01;
 /// How far the one that goes furthest may go, by its own.
 const SHIFT: f64 = 4.4;
 
+/// How much more a right answer may leave of a signal of the runs held out: they are few, and no scale was
+/// settled on them.
+const HELD: f64 = 1.5;
+
 /// Something that a right answer would not leave so large.
 #[derive(Clone, Debug)]
 pub(super) struct Objection {
@@ -26,13 +31,15 @@ pub(super) struct Objection {
     pub(super) why: String,
     /// The signal that it is about; none where it is about tolerances.
     pub(super) at: Option<(Generator, Signal)>,
+    /// Whether it is of the runs held out.
+    pub(super) is_held: bool,
 }
 
 impl Findings {
     /// The strongest objection to the best cause or pair; about one, or less, where it is right.
     pub(super) fn objection(&self) -> Objection {
-        let of_signals = self.signals_left().chain(self.echoing());
-        let all = of_signals.chain(self.furthest()).chain([self.bending()]);
+        let of_signals = self.signals_left().chain(self.held_left()).chain(self.echoing());
+        let all = of_signals.chain(furthest(&self.shifts)).chain([self.bending()]);
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
 
@@ -47,15 +54,29 @@ impl Findings {
         let signals = self.unbent.iter().zip(&self.after).zip(explained);
         signals.map(move |((before, after), explained)| Objection {
             times: excess(&names, [before, after], explained),
-            why: format!(
-                "{:.1} floors of {:.1} are left of the {} of {}",
-                after.square.sqrt(),
-                before.square.sqrt(),
-                after.signal.with_wheel(),
-                after.generator
-            ),
+            why: how_much([before, after]),
             at: Some((after.generator, after.signal)),
+            is_held: false,
         })
+    }
+
+    /// The same of the runs held out: what only they show was not fitted, and is not explained either.
+    pub(super) fn held_left(&self) -> impl Iterator<Item = Objection> {
+        let names = self.names();
+        let Held { unbent, after, shifts } = &self.held;
+        let left = unbent.iter().zip(after).map(move |(before, after)| Objection {
+            times: excess(&names, [before, after], 0.0) / HELD,
+            why: format!("{} in the runs held out", how_much([before, after])),
+            at: Some((after.generator, after.signal)),
+            is_held: true,
+        });
+        let bent = furthest(shifts).map(|bent| Objection {
+            times: bent.times / HELD,
+            why: format!("{} in the runs held out", bent.why),
+            is_held: true,
+            ..bent
+        });
+        left.chain(bent)
     }
 
     fn echoing(&self) -> impl Iterator<Item = Objection> {
@@ -69,16 +90,7 @@ impl Findings {
                 echo.nats
             ),
             at: Some((echo.generator, echo.signal)),
-        })
-    }
-
-    /// The tolerance that goes furthest.
-    fn furthest(&self) -> Option<Objection> {
-        let furthest = self.shifts.iter().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
-        furthest.map(|(knob, by)| Objection {
-            times: (by / SHIFT).powi(2),
-            why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
-            at: None,
+            is_held: false,
         })
     }
 
@@ -92,8 +104,31 @@ impl Findings {
                 "all tolerances together would have to move by {squares:.0} squares of their own"
             ),
             at: None,
+            is_held: false,
         }
     }
+}
+
+/// The tolerance that goes furthest.
+fn furthest(shifts: &[(Knob, f64)]) -> Option<Objection> {
+    let furthest = shifts.iter().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+    furthest.map(|(knob, by)| Objection {
+        times: (by / SHIFT).powi(2),
+        why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
+        at: None,
+        is_held: false,
+    })
+}
+
+fn how_much([before, after]: [&Left; 2]) -> String {
+    let floors = |left: &Left| left.square.sqrt();
+    format!(
+        "{:.1} floors of {:.1} are left of the {} of {}",
+        floors(after),
+        floors(before),
+        after.signal.with_wheel(),
+        after.generator
+    )
 }
 
 #[cfg(test)]
@@ -101,7 +136,6 @@ mod tests {
     use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
-    use super::super::super::knob::Knob;
     use super::*;
 
     fn echo(nats: f64) -> Echo {
@@ -121,6 +155,20 @@ mod tests {
         assert!(echoing.why.contains("60 nats"), "{echoing:?}");
         assert!(bent.times > 1.5 && bent.why.contains(&knob.to_string()), "{bent:?}");
         assert!(of(1.0, 0.5).times < 0.5);
+    }
+
+    #[test]
+    fn what_runs_held_out_leave_speaks_where_it_is_well_beyond_a_floor() {
+        let of = |floors: f64| {
+            let generator = Generator::Joint(0);
+            let (signal, square, samples) = (Signal::JointAngle, floors * floors, 100.0);
+            let left = vec![Left { generator, signal, square, steady: square, samples }];
+            let held = Held { unbent: left.clone(), after: left, ..Held::default() };
+            Findings { held, ..Findings::default() }.objection()
+        };
+        assert!(of(1.4).times < 1.0);
+        let loud = of(9.0);
+        assert!(loud.is_held && loud.times > 3.0 && loud.why.contains("held out"), "{loud:?}");
     }
 
     #[test]

@@ -26,15 +26,19 @@ pub(crate) struct Check {
     /// NAME.toml in `answers` beside the folder or within it
     #[arg(long, value_name = "DIR")]
     set: Option<PathBuf>,
-    /// How many cases to draw
-    #[arg(long, value_name = "N", default_value = "40", conflicts_with = "set")]
-    cases: NonZeroUsize,
+    /// How many cases to examine: 40 are drawn when left out; with --set the first N of the folder in the
+    /// order of their names, all of them when left out
+    #[arg(long, value_name = "N")]
+    cases: Option<NonZeroUsize>,
     /// Seed of the cases drawn, and of the seal's salt
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Write every score and every diagnosis as JSON, and beside it the seal as soon as it is made
+    /// Write every score and every diagnosis as JSON, and beside it the seal as soon as it is made.
+    /// Without FILE the JSON goes to stdout, and the table to stderr
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    // The outer is whether it was asked for, the inner the file.
+    #[allow(clippy::option_option)]
+    json: Option<Option<PathBuf>>,
     /// Draw the reliability curve (SVG)
     #[arg(long, value_name = "FILE")]
     curve: Option<PathBuf>,
@@ -50,20 +54,13 @@ pub(crate) struct Check {
     no_how_far: bool,
 }
 
+/// How many cases are drawn where nobody says.
+const DRAWN: usize = 40;
+
 impl Check {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let seal = self.json.as_ref().map(|json| json.with_extension("seal"));
-        let sources = match &self.set {
-            Some(folder) => Source::in_folder(folder)?,
-            None => Source::drawn(self.cases.get(), self.seed),
-        };
-        let outputs = Outputs::new([
-            ("--json", self.json.as_ref()),
-            ("--json, for its seal,", seal.as_ref()),
-            ("--curve", self.curve.as_ref()),
-        ]);
-        let read: Vec<PathBuf> = sources.iter().flat_map(Source::files).collect();
-        outputs.ensure_apart(read.iter().map(PathBuf::as_path))?;
+        let seal = self.json_file().map(|json| json.with_extension("seal"));
+        let sources = self.sources(seal.as_ref())?;
         let withheld = match &self.set {
             _ if !self.sweep => Vec::new(),
             Some(_) => sources.clone(),
@@ -95,14 +92,51 @@ impl Check {
             let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
             report = report.with_sweep(sweep(&withheld, &told)?);
         }
-        say!("{}", report.text());
-        if let Some(json) = &self.json {
-            write(json, &format!("{:#}\n", report.json()))?;
+        self.tell(&report)?;
+        Ok(Verdict::Positive)
+    }
+
+    /// The cases to examine; refuses to write over any file of the set, also of cases that are left out.
+    fn sources(&self, seal: Option<&PathBuf>) -> Result<Vec<Source>, Failure> {
+        let wanted = self.cases.map(NonZeroUsize::get);
+        let mut sources = match &self.set {
+            Some(folder) => Source::in_folder(folder)?,
+            None => Source::drawn(wanted.unwrap_or(DRAWN), self.seed),
+        };
+        let outputs = Outputs::new([
+            ("--json", self.json_file()),
+            ("--json, for its seal,", seal),
+            ("--curve", self.curve.as_ref()),
+        ]);
+        let read: Vec<PathBuf> = sources.iter().flat_map(Source::files).collect();
+        outputs.ensure_apart(read.iter().map(PathBuf::as_path))?;
+        sources.truncate(wanted.unwrap_or(usize::MAX));
+        Ok(sources)
+    }
+
+    /// Where the JSON is to go, if into a file.
+    fn json_file(&self) -> Option<&PathBuf> {
+        self.json.as_ref()?.as_ref()
+    }
+
+    /// The report in every form that was asked for; stdout has one of them alone, for a script to read.
+    fn tell(&self, report: &Report) -> Result<(), Failure> {
+        let json = || format!("{:#}\n", report.json());
+        match &self.json {
+            Some(None) => {
+                eprint!("{}", report.text());
+                say!("{}", json());
+            }
+            Some(Some(file)) => {
+                say!("{}", report.text());
+                write(file, &json())?;
+            }
+            None => say!("{}", report.text()),
         }
         if let Some(picture) = &self.curve {
             write(picture, &curve(&report.reliability())?)?;
         }
-        Ok(Verdict::Positive)
+        Ok(())
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Details {
     pub runs: Vec<RunLine>,
     /// Root mean square of every generator's residual in each of [`REGIMES`], floors.
     pub map: Vec<Row>,
-    /// How every generator's error grows with time, the largest gap first.
+    /// How every generator's error grows with time: first where the verdict sees most, then the largest.
     pub horizons: Vec<Curve>,
     /// Where the gap is largest on runs that were not fitted, before and after; on fitted ones where
     /// all were.
@@ -82,7 +82,7 @@ impl Details {
                 })
                 .collect(),
             map: regimes::map(inquiry, &pairs),
-            horizons: horizons::curves(&pairs),
+            horizons: horizons::curves(&pairs, diagnosis),
             traces: traces::traces(inquiry, &pairs),
             has_after: !overlay.entries.is_empty(),
             faults: inquiry.runs.iter().flat_map(|run| run.log.told_faults()).collect(),

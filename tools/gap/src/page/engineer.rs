@@ -28,7 +28,7 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
     );
     let _ = write!(
         out,
-        "<h2>How fast it parts: error against horizon</h2>{}<p class=\"small\">{lines} Error after a block was set to what was measured.</p>",
+        "<h2>How fast it parts: error against horizon</h2>{}<p class=\"small\">{lines} How far a block's error moves within that time. First the places that the verdict is about, then what moves most.</p>",
         horizon::draw(details)
     );
     let held = if details.traces.iter().any(|trace| trace.fit) {

@@ -1,4 +1,5 @@
-//! How fast the blocks with the largest gaps part from the log, before and after.
+//! How fast blocks part from the log, before and after: those that the verdict is about, and those that
+//! part fastest.
 
 use super::chart::{Axis, Frame};
 use super::colour::{AFTER, BEFORE, INK};
@@ -43,5 +44,5 @@ pub(super) fn draw(details: &Details) -> String {
             }
         }
     }
-    svg.finish("Error of blocks over the time since they were last set to the measurement")
+    svg.finish("How far the error of blocks moves within a time")
 }

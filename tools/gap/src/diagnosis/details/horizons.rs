@@ -1,17 +1,22 @@
-//! How a block's error grows with the time since it was last set to what was measured.
+//! How fast a block parts from the log: how far its error moves within a time.
 
 use super::{Pair, STEP_S, rms};
+use crate::diagnosis::generator::Generator;
+use crate::diagnosis::verdict::{Diagnosis, Spot};
 
 /// Horizons, s.
 pub const HORIZONS_S: [f64; 5] = [0.1, 0.5, 1.0, 2.0, 5.0];
 
-/// Samples of a residual from one instant at which a block is set to the measurement to the next.
+/// Samples of a piece of a residual: 5 s, as the furthest horizon.
 const PIECE: usize = 50;
+/// Places of the verdict that have a curve before all others. An error in floors that every machine has
+/// may be larger than the one that is named: then the block that the verdict is about had none.
+const PLACES: usize = 2;
 
 /// One generator's error over the horizon.
 ///
-/// The error at a horizon is the root mean square of how far the residual has moved in that time,
-/// within the pieces of 5 s at whose starts blocks are set to what was measured.
+/// The error at a horizon is the root mean square of how far the residual has moved in that time, within
+/// pieces of 5 s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The generator.
@@ -22,31 +27,54 @@ pub struct Curve {
     pub after: [Option<f64>; 5],
 }
 
-/// A curve for each generator, over all runs, the largest first.
-pub(super) fn curves(pairs: &[Pair]) -> Vec<Curve> {
-    let curve = |first: &Pair| {
-        let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
-        let moved = |after: bool, horizon_s: f64| {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let by = ((horizon_s / STEP_S).round() as usize).min(PIECE - 1);
-            rms(same().flat_map(move |pair| {
-                let residuals = if after { &pair.after } else { &pair.before };
-                residuals.iter().flat_map(move |residual| {
-                    let moved = move |piece: &[f64]| -> Vec<f64> {
-                        piece.iter().zip(piece.iter().skip(by)).map(|(a, b)| b - a).collect()
-                    };
-                    residual.values.chunks(PIECE).flat_map(moved)
-                })
-            }))
-        };
-        Curve {
-            name: first.generator.to_string(),
-            before: HORIZONS_S.map(|horizon_s| moved(false, horizon_s)),
-            after: HORIZONS_S.map(|horizon_s| moved(true, horizon_s)),
-        }
-    };
-    let mut curves: Vec<Curve> = pairs.iter().filter(|pair| pair.run == 0).map(curve).collect();
+/// A curve for each generator, over all runs: those of the verdict's first places, then the largest first.
+pub(super) fn curves(pairs: &[Pair], diagnosis: &Diagnosis) -> Vec<Curve> {
+    let mut curves: Vec<(Generator, Curve)> =
+        pairs.iter().filter(|pair| pair.run == 0).map(|pair| curve(pairs, pair)).collect();
     let last = |curve: &Curve| curve.before.iter().rev().flatten().next().copied().unwrap_or(0.0);
-    curves.sort_by(|a, b| last(b).total_cmp(&last(a)));
-    curves
+    curves.sort_by(|(_, a), (_, b)| last(b).total_cmp(&last(a)));
+    let open = diagnosis.unexplained.iter();
+    let mut first = 0;
+    for spot in open.chain(diagnosis.places.iter().map(|place| &place.spot)) {
+        let of_spot = |(generator, _): &(Generator, Curve)| watches(pairs, *generator, spot);
+        // One that is among the first already has this place shown.
+        if first < PLACES
+            && !curves[..first].iter().any(of_spot)
+            && let Some(at) = curves.iter().position(of_spot)
+        {
+            curves[first..=at].rotate_right(1);
+            first += 1;
+        }
+    }
+    curves.into_iter().map(|(_, curve)| curve).collect()
+}
+
+/// Whether one of a generator's signals is what `spot` is of.
+fn watches(pairs: &[Pair], generator: Generator, spot: &Spot) -> bool {
+    let own = pairs.iter().filter(|pair| pair.generator == generator);
+    own.flat_map(|pair| &pair.before).any(|residual| spot.is_of(generator, residual.signal))
+}
+
+/// The curve of the generator of `first`.
+fn curve(pairs: &[Pair], first: &Pair) -> (Generator, Curve) {
+    let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
+    let moved = |after: bool, horizon_s: f64| {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let by = ((horizon_s / STEP_S).round() as usize).min(PIECE - 1);
+        rms(same().flat_map(move |pair| {
+            let residuals = if after { &pair.after } else { &pair.before };
+            residuals.iter().flat_map(move |residual| {
+                let moved = move |piece: &[f64]| -> Vec<f64> {
+                    piece.iter().zip(piece.iter().skip(by)).map(|(a, b)| b - a).collect()
+                };
+                residual.values.chunks(PIECE).flat_map(moved)
+            })
+        }))
+    };
+    let curve = Curve {
+        name: first.generator.to_string(),
+        before: HORIZONS_S.map(|horizon_s| moved(false, horizon_s)),
+        after: HORIZONS_S.map(|horizon_s| moved(true, horizon_s)),
+    };
+    (first.generator, curve)
 }

@@ -100,6 +100,15 @@ fn spot((generator, signal): (Generator, Signal), scope: Scope) -> Spot {
     Spot { block: generator.block(), part: generator.part(), scope, residual }
 }
 
+impl Spot {
+    /// Whether it is of this signal of this generator.
+    pub(in crate::diagnosis) fn is_of(&self, generator: Generator, signal: Signal) -> bool {
+        let own = wheel(generator, signal);
+        own.is_none_or(|wheel| self.scope.contains(wheel))
+            && spot((generator, signal), self.scope) == *self
+    }
+}
+
 /// One signal of one generator, with the wheels that part as its own does where `places` name it.
 pub(super) fn unexplained(at: (Generator, Signal), places: &[Place]) -> Spot {
     let own = wheel(at.0, at.1);

@@ -1,0 +1,119 @@
+//! A made-up answer and the logs that it is of, with a name in every text that must be escaped.
+
+use std::path::Path;
+
+use xt28_gap::diagnosis::{
+    Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Inquiry, Next, NotTestable, Place,
+    ShareOf, Shrink, Spot, Together, Verdict,
+};
+use xt28_gap::page::{Subject, html};
+use xt28_gap::{Decoder, FieldLog, Mapping};
+use xt28_machine::Machine;
+use xt28_sim::effects::{Block, find};
+
+use crate::made_up::{signals, swinging};
+
+/// A name that would be a program, if a browser took it for one.
+pub(crate) const HOSTILE: &str = "<script>alert('1')</script>&\".log";
+
+pub(crate) fn inquiry() -> Inquiry {
+    let decoder =
+        Decoder::parse(include_str!("../field.dbc"), Path::new("field.dbc"), &Mapping::default());
+    let frames = [
+        "0CFF4027#5555555555551299",
+        "0CFF4127#00000000780201A6",
+        "18FE1025#2800280028002900",
+        "18FE1026#2A002B00",
+        "18FE2020#F505F5050C030C03",
+        "18FE202A#2C0F2C0F",
+        "18FE202B#28000000FAFF0A00",
+        "18FE1012#00000000640038FF",
+        "0CFF5229#FE0310C0FF020080",
+    ];
+    let text: String = [1, 9]
+        .iter()
+        .flat_map(|s| frames.iter().map(move |frame| format!("({s}.0) can0 {frame}\n")))
+        .collect();
+    let log = FieldLog::read(text.as_bytes(), HOSTILE, &decoder.unwrap(), false).unwrap();
+    assert!(!log.faults().is_empty(), "the pause is a fault with the log's name in it");
+    let [signals] = signals(&swinging());
+    let run = |fit| FieldRun { log: log.clone(), signals: signals.clone(), fit };
+    Inquiry::new(Machine::xt28(), vec![run(true), run(false)])
+}
+
+pub(crate) fn shrink() -> Shrink {
+    let interval = [[0.5, 0.6], [0.7, 0.9], [0.6, 0.85]];
+    Shrink { one_step: 0.55, five_s: 0.81, run: -0.2, interval }
+}
+
+pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
+    let cause = |name: &str, probability| Cause {
+        effect: find(name).unwrap(),
+        scope: "front".parse().unwrap(),
+        scopes: vec![("front".parse().unwrap(), 0.7), ("FR".parse().unwrap(), 0.3)],
+        probability,
+        parameters: vec![Estimate {
+            name: find(name).unwrap().parameters[0].name,
+            value: [0.21, 0.19, 0.23],
+        }],
+        class: vec![find(name).unwrap().name, "valve-lag"],
+        begins: None,
+        shrink: Some(shrink()),
+    };
+    let place = |block, scope: &str, gap_over_noise| Place {
+        spot: Spot {
+            block,
+            part: "stance",
+            scope: scope.parse().unwrap(),
+            residual: HOSTILE.to_owned(),
+        },
+        gap_over_noise,
+        share: 0.5,
+    };
+    Diagnosis {
+        verdict,
+        places: vec![
+            place(Block::Arms, "FR", 84.0),
+            place(Block::Steering, "all", 2.0),
+            place(Block::Payload, "all", 0.0),
+        ],
+        share_of: ShareOf::Machine,
+        unexplained: None,
+        causes: vec![cause("arm-delay", 0.93), cause("leakage-drift", 0.71)],
+        probability_none: 0.01,
+        probability_unknown: 0.02,
+        together: Some(Together {
+            effects: vec!["arm-delay", "leakage-drift"],
+            shrink: shrink(),
+            black_box: shrink(),
+            held_out_runs: vec![HOSTILE.to_owned()],
+        }),
+        held_out_runs: vec![HOSTILE.to_owned()],
+        looked_ahead: true,
+        next: Some(Next {
+            manoeuvre: HOSTILE.to_owned(),
+            separates: vec!["arm-delay", "valve-lag"],
+            nats: 3.1,
+            others: vec![Drive { manoeuvre: HOSTILE.to_owned(), nats: 1.2 }],
+        }),
+        not_testable: vec![NotTestable {
+            effect: find("steer-lag").unwrap(),
+            lacks: HOSTILE.to_owned(),
+            manoeuvre: "s-turn".to_owned(),
+        }],
+        notes: vec![HOSTILE.to_owned()],
+        log_faults: Vec::new(),
+        seconds: 41.2,
+    }
+}
+
+pub(crate) fn page(verdict: Verdict) -> String {
+    page_of(&diagnosis(verdict))
+}
+
+pub(crate) fn page_of(diagnosis: &Diagnosis) -> String {
+    let inquiry = inquiry();
+    let details = Details::new(&inquiry, diagnosis);
+    let subject = Subject { name: HOSTILE.to_owned(), date: HOSTILE.to_owned() };
+    html(&subject, &inquiry.machine, diagnosis, &details)
+}

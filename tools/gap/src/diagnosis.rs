@@ -46,6 +46,7 @@ pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
 pub use judgement::Findings;
+pub(crate) use knob::SHIFT_MAX;
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use noise::with_noise_of;

@@ -6,6 +6,7 @@
 
 mod assumptions;
 mod brief;
+mod caption;
 mod chart;
 mod colour;
 mod engineer;

@@ -1,10 +1,11 @@
-//! What the pages show of gaps.
+//! What the pages say of gaps: which are shown, how they were told, what a small one means.
 
 mod answer;
 mod made_up;
 
-use answer::{diagnosis, inquiry};
-use xt28_gap::diagnosis::{Details, Diagnosis, Place, Spot, Verdict};
+use answer::{diagnosis, inquiry, page, page_of};
+use xt28_gap::diagnosis::{Details, Diagnosis, Place, ShareOf, Spot, Verdict};
+use xt28_gap::page::text;
 use xt28_sim::effects::Block;
 
 #[test]
@@ -31,4 +32,29 @@ fn the_place_that_the_verdict_is_about_has_the_first_curve_over_the_horizon() {
         names.iter().filter(|name| *name != "joint front").cloned().collect()
     };
     assert_eq!(others(&first), others(&by_error), "the rest by how far their errors move");
+}
+
+#[test]
+fn a_gap_says_how_far_tolerances_went_and_a_share_what_it_is_of() {
+    let known = page(Verdict::Effect);
+    assert!(known.contains("beside the cause or pair that fits best, but held to 2.5 of its own."));
+    let unknown = page(Verdict::Unknown);
+    assert!(unknown.contains("while no cause is believed, but held to one of its own."));
+    let shares = "Of gaps below a floor a share says little.";
+    assert!(known.contains(shares) && text(&diagnosis(Verdict::Effect)).contains(shares));
+    let squares = Diagnosis { share_of: ShareOf::Squares, ..diagnosis(Verdict::Effect) };
+    assert!(!text(&squares).contains(shares), "these go beyond floors only");
+}
+
+#[test]
+fn a_cause_beside_small_gaps_alone_is_explained_on_both_pages() {
+    let why = "a cause is told by the pattern over time of many samples";
+    let of = |verdict, gap| {
+        let mut diagnosis = diagnosis(verdict);
+        diagnosis.places.iter_mut().for_each(|place| place.gap_over_noise = gap);
+        (page_of(&diagnosis).matches(why).count(), text(&diagnosis).matches(why).count())
+    };
+    assert_eq!(of(Verdict::Effect, 1.4), (2, 1));
+    assert_eq!(of(Verdict::Effect, 1.6), (0, 0));
+    assert_eq!(of(Verdict::None, 1.4), (0, 0), "nothing is named");
 }

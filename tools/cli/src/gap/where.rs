@@ -18,12 +18,15 @@ use crate::{Failure, Verdict};
 
 /// Drive each block of the simulator with what was measured, and say which one parts from the log
 ///
-/// A block's gap is the root mean square of what is left once masses and stiffnesses are at their best,
-/// in units of what separates two models of one nominal machine (as in `diagnose`; the JSON has its
-/// square as well, as gap_over_floor). A sound machine, whose every part is a little off, shows up to
-/// about 2.5; beyond 3.2 there is something to explain. Blocks of which nothing can be judged have none: how the
-/// machine stands, travels and is driven is judged on level
-/// ground, or on a slope that is known, alone.
+/// A block's gap is the root mean square of all its signals' errors on all logs, in units of what separates
+/// two models of one nominal machine (the JSON has its square as well, as gap_over_floor). Masses, stiffnesses
+/// and the like are where they fit best, and no effect is believed but those of --effects. Gaps of `diagnose`
+/// are others: of each signal alone, on the logs that are fitted, with every effect a little there too, and each
+/// tolerance held to 2.5 of its own (1 where the verdict is unknown).
+///
+/// A sound machine, whose every part is a little off, shows up to about 2.5; beyond 3.2 there is something to
+/// explain. Blocks of which nothing can be judged have none: how the machine stands, travels and is driven is
+/// judged on level ground, or on a slope that is known, alone.
 #[derive(Args)]
 pub(crate) struct Where {
     /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames

@@ -11,7 +11,7 @@ use xt28_sim::effects::{Block, CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Sco
 /// a third of a valve's gain (measured on foreign plants, docs/diagnosis.md).
 const SOUND: f64 = 0.4;
 /// How many of its own a knob goes beside a right answer; one that goes further hides something.
-pub(super) const SHIFT_MAX: f64 = 2.5;
+pub(crate) const SHIFT_MAX: f64 = 2.5;
 
 /// One number that may be other than one believes.
 #[derive(Clone, Copy, Debug)]

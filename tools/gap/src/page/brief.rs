@@ -4,6 +4,7 @@ use core::fmt::Write as _;
 
 use xt28_machine::Machine;
 
+use super::caption::small_gaps;
 use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
@@ -23,8 +24,10 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
             escape(&sizes(cause))
         );
     }
+    let small = small_gaps(diagnosis);
+    let small = small.map_or_else(String::new, |why| format!("<p class=\"small\">{why}</p>"));
     format!(
-        "<h1>{}</h1>{meanings}<div class=\"columns\"><div>{}</div><div><h2>How sure</h2>{}<h2>How far the gap shrinks</h2>{}<h2>What to do next</h2>{}</div></div>{}",
+        "<h1>{}</h1>{meanings}<div class=\"columns\"><div>{}{small}</div><div><h2>How sure</h2>{}<h2>How far the gap shrinks</h2>{}<h2>What to do next</h2>{}</div></div>{}",
         escape(&headline(diagnosis)),
         machine_view::draw(machine, diagnosis),
         sureness(diagnosis),

@@ -2,10 +2,9 @@
 
 use core::fmt::Write as _;
 
+use super::caption::{gap_over_noise, how_to_read_shares, share_of, small_gaps};
 use super::svg::escape;
-use super::words::{
-    by_share, elsewhere, is_elsewhere, judged_on, on, percent, share_of, short, shrinks,
-};
+use super::words::{by_share, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks};
 use crate::diagnosis::{Cause, Details, Diagnosis, Place, Shrink};
 
 /// Causes listed.
@@ -28,9 +27,21 @@ pub(super) fn places(diagnosis: &Diagnosis) -> String {
     let rows: String = diagnosis.places.iter().take(PLACES).map(row).collect();
     format!(
         "<table><thead><tr><th>block</th><th>wheels</th><th>signal</th><th>gap over noise</th><th>share</th></tr></thead><tbody>{rows}</tbody></table>\
-         <p class=\"small\">Gap over noise: root mean square once tolerances are at their best. {}.</p>",
-        capitalised(share_of(diagnosis.share_of))
+         {}",
+        places_caption(diagnosis)
     )
+}
+
+/// What the columns of that table are.
+fn places_caption(diagnosis: &Diagnosis) -> String {
+    let told = format!(
+        "Gap over noise: {}. {}.",
+        gap_over_noise(diagnosis),
+        capitalised(share_of(diagnosis.share_of))
+    );
+    let more = [how_to_read_shares(diagnosis.share_of), small_gaps(diagnosis)];
+    let all: Vec<&str> = core::iter::once(&*told).chain(more.into_iter().flatten()).collect();
+    format!("<p class=\"small\">{}</p>", escape(&all.join(" ")))
 }
 
 fn capitalised(words: &str) -> String {

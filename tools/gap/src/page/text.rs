@@ -2,10 +2,11 @@
 
 use core::fmt::Write as _;
 
+use super::caption::{how_to_read_shares, share_of, small_gaps};
 use super::headline;
 use super::words::{
-    after_that, elsewhere, estimate, how_well, is_elsewhere, judged_on, percent, rivals, share_of,
-    short, shrink,
+    after_that, elsewhere, estimate, how_well, is_elsewhere, judged_on, percent, rivals, short,
+    shrink,
 };
 use crate::diagnosis::{Cause, Diagnosis};
 
@@ -89,6 +90,11 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         );
     }
     let _ = writeln!(out, "  {}", share_of(diagnosis.share_of));
+    for sentence in
+        [how_to_read_shares(diagnosis.share_of), small_gaps(diagnosis)].into_iter().flatten()
+    {
+        let _ = writeln!(out, "  {sentence}");
+    }
 }
 
 fn causes(out: &mut String, diagnosis: &Diagnosis) {

@@ -3,7 +3,7 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Drive, Estimate, Next, ShareOf, Shrink, WORTH_TELLING};
+use crate::diagnosis::{Cause, Drive, Estimate, Next, Shrink, WORTH_TELLING};
 
 /// Beyond this many nats, odds of a thousand, a figure says no more than a word: models are not that good.
 const EASILY_NATS: f64 = 7.0;
@@ -17,18 +17,6 @@ pub(super) const fn judged_on(held_out_runs: &[String]) -> &'static str {
         "the runs that were fitted, as none was held out"
     } else {
         "runs that were not fitted"
-    }
-}
-
-/// What the shares of places are of.
-pub(super) const fn share_of(of: ShareOf) -> &'static str {
-    match of {
-        ShareOf::Squares => {
-            "share: of the squares of all gaps on measured inputs, as far as they go beyond noise"
-        }
-        ShareOf::Machine => {
-            "share: of the whole machine's gap 5 s ahead; each block's by Shapley's value, dealt out among its signals by their gaps"
-        }
     }
 }
 

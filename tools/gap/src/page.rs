@@ -4,6 +4,7 @@
 //! The pages are one HTML file with its drawings inline: no script, nothing fetched, and every text
 //! that comes from a log is escaped.
 
+mod ahead;
 mod assumptions;
 mod brief;
 mod caption;

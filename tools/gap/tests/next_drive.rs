@@ -6,7 +6,8 @@ use std::path::Path;
 
 use made_up::{signals, swinging};
 use xt28_gap::diagnosis::{
-    Cause, Diagnosis, Estimate, FieldRun, Inquiry, ShareOf, Verdict, next_drive,
+    Cause, Diagnosis, Estimate, FieldRun, Inquiry, NotTestable, ShareOf, Verdict, next_drive,
+    untested_drive,
 };
 use xt28_gap::{Decoder, FieldLog, Mapping};
 use xt28_machine::Machine;
@@ -83,9 +84,10 @@ fn a_late_joint_and_a_slow_one_are_told_apart_in_a_bend() {
         (next.manoeuvre.as_str(), next.separates),
         (manoeuvre.name, vec!["steer-delay", "steer-lag"])
     );
-    assert!(next.nats > 1.0, "{}", next.nats);
-    let worth: Vec<f64> = next.others.iter().map(|drive| drive.nats).collect();
-    assert!(worth.len() > 2 && worth.is_sorted_by(|a, b| a >= b) && worth[0] <= next.nats);
+    let nats = next.nats.expect("it tells apart");
+    assert!(nats > 1.0, "{nats}");
+    let worth: Vec<f64> = next.others.iter().filter_map(|drive| drive.nats).collect();
+    assert!(worth.len() > 2 && worth.is_sorted_by(|a, b| a >= b) && worth[0] <= nats);
 }
 
 #[test]
@@ -115,4 +117,26 @@ fn a_drive_that_was_made_is_not_asked_for_again() {
     if let Some((next, _)) = next {
         assert!(!["s-turn", "mixed"].contains(&next.manoeuvre.as_str()), "{}", next.manoeuvre);
     }
+}
+
+#[test]
+fn what_no_log_tests_asks_for_the_drive_that_tests_most_of_it() {
+    let lacking = |effect: &str, manoeuvre: &str| NotTestable {
+        effect: find(effect).unwrap(),
+        lacks: String::new(),
+        manoeuvre: manoeuvre.to_owned(),
+    };
+    let not_testable = vec![
+        lacking("valve-lag", "single-arm"),
+        lacking("steer-lag", "s-turn"),
+        lacking("steer-delay", "s-turn"),
+    ];
+    let (next, manoeuvre) =
+        untested_drive(&Diagnosis { not_testable, ..diagnosis(Vec::new()) }).unwrap();
+    assert_eq!((next.manoeuvre.as_str(), manoeuvre.name), ("s-turn", "s-turn"));
+    assert_eq!(next.tests, ["steer-lag", "steer-delay"]);
+    assert!(next.separates.is_empty() && next.nats.is_none(), "it is not for that");
+    let [other] = &next.others[..] else { panic!("one other tests something") };
+    assert_eq!((other.manoeuvre.as_str(), &other.tests[..]), ("single-arm", &["valve-lag"][..]));
+    assert!(untested_drive(&diagnosis(Vec::new())).is_none(), "all is tested");
 }

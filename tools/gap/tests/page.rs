@@ -233,6 +233,10 @@ fn json_has_every_key_whatever_there_is_to_say() {
     for key in ["next", "together"] {
         assert_eq!(json.get(key), Some(&serde_json::Value::Null), "{key}");
     }
+    sound.causes[1].shrink = None;
+    let json = serde_json::to_value(&sound).unwrap();
+    assert!(json["causes"][0]["shrink"]["interval"].is_array(), "it was worked out");
+    assert_eq!(json["causes"][1].get("shrink"), Some(&serde_json::Value::Null));
 }
 
 #[test]

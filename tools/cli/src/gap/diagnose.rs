@@ -85,6 +85,9 @@ pub(crate) struct Diagnose {
     overlay: Option<PathBuf>,
 }
 
+/// What is noted where the drive to make next, if any, is for something else.
+const NOTHING_APART: &str = "No scripted drive is left that would tell likely causes apart";
+
 impl Diagnose {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         self.ensure_outputs_apart()?;
@@ -159,28 +162,24 @@ impl Diagnose {
     /// what shows most that these logs do not.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
         diagnosis.looked_ahead = true;
-        let (manoeuvre, good_for) = if let Some((next, manoeuvre)) = next_drive(inquiry, diagnosis)?
-        {
-            let good_for = format!("tells apart {}", next.separates.join(", "));
-            diagnosis.next = Some(next);
-            (manoeuvre, good_for)
-        } else if let Some((manoeuvre, effects)) = untested_drive(diagnosis) {
-            let name = manoeuvre.name;
-            let some =
-                if effects == 1 { "an effect".to_owned() } else { format!("{effects} effects") };
-            diagnosis.notes.push(format!(
-                "No scripted drive is left that would tell likely causes apart; {name} would test {some} \
-                 that these logs do not."
-            ));
-            (manoeuvre, "tests what no log did".to_owned())
-        } else {
-            let nothing = "No scripted drive is left that would tell likely causes apart, and no effect is \
-                           untested.";
+        let apart = next_drive(inquiry, diagnosis)?;
+        let is_apart = apart.is_some();
+        let Some((next, manoeuvre)) = apart.or_else(|| untested_drive(diagnosis)) else {
             let unwritten =
                 self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
-            diagnosis.notes.push(format!("{nothing}{}", unwritten.unwrap_or_default()));
+            diagnosis.notes.push(format!(
+                "{NOTHING_APART}, and no effect is untested.{}",
+                unwritten.unwrap_or_default()
+            ));
             return Ok(());
         };
+        let good_for = if is_apart {
+            format!("tells apart {}", next.separates.join(", "))
+        } else {
+            diagnosis.notes.push(format!("{NOTHING_APART}."));
+            "tests what no log did".to_owned()
+        };
+        diagnosis.next = Some(next);
         let Some(path) = &self.next else { return Ok(()) };
         write_drive(path, &manoeuvre, &good_for)
     }

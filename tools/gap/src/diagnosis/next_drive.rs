@@ -57,22 +57,31 @@ pub fn next_drive(
     let mut ranked = ranked.into_iter();
     Ok(ranked.next().filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, best)| {
         let separates = rivals.iter().map(|rival| rival.name).collect();
-        let drive = |(nats, m): (f64, Manoeuvre)| Drive { manoeuvre: m.name.to_owned(), nats };
-        let others = ranked.map(drive).collect();
-        (Next { manoeuvre: best.name.to_owned(), separates, nats, others }, best)
+        let others = ranked.map(|(nats, m)| drive(diagnosis, &m, Some(nats))).collect();
+        let Drive { manoeuvre, nats, tests } = drive(diagnosis, &best, Some(nats));
+        (Next { manoeuvre, separates, nats, tests, others }, best)
     }))
 }
 
-/// The manoeuvre that would show most of what the logs could not, and how many effects; `None` where
-/// they could show all.
+/// A manoeuvre, with what it would test beside.
+fn drive(diagnosis: &Diagnosis, manoeuvre: &Manoeuvre, nats: Option<f64>) -> Drive {
+    let untested = diagnosis.not_testable.iter().filter(|one| one.manoeuvre == manoeuvre.name);
+    let tests = untested.map(|one| one.effect.name).collect();
+    Drive { manoeuvre: manoeuvre.name.to_owned(), nats, tests }
+}
+
+/// The manoeuvre that would show most of what the logs could not, with what it shows; `None` where they
+/// could show all.
 #[must_use]
-pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Manoeuvre, usize)> {
-    let shows = |m: Manoeuvre| {
-        let effects = diagnosis.not_testable.iter().filter(|one| one.manoeuvre == m.name).count();
-        (m, effects)
-    };
-    let most = Manoeuvre::all().into_iter().map(shows).max_by_key(|(_, effects)| *effects);
-    most.filter(|(_, effects)| *effects > 0)
+pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Next, Manoeuvre)> {
+    let all = Manoeuvre::all().into_iter().map(|m| (drive(diagnosis, &m, None), m));
+    let mut ranked: Vec<(Drive, Manoeuvre)> =
+        all.filter(|(drive, _)| !drive.tests.is_empty()).collect();
+    ranked.sort_by_key(|(drive, _)| core::cmp::Reverse(drive.tests.len()));
+    let mut ranked = ranked.into_iter();
+    let (Drive { manoeuvre, nats, tests }, best) = ranked.next()?;
+    let others = ranked.map(|(drive, _)| drive).collect();
+    Some((Next { manoeuvre, separates: Vec::new(), nats, tests, others }, best))
 }
 
 /// Whether the log at `path` is of the drive `name`, by its own name: `run-3-s_turn.log.gz`.

@@ -29,7 +29,8 @@ pub struct Diagnosis {
     pub held_out_runs: Vec<String>,
     /// Whether the next test drive was looked for.
     pub looked_ahead: bool,
-    /// Manoeuvre that would tell the most; `null` in JSON without one.
+    /// Manoeuvre that would tell likely causes apart best or, where none would, test most of what these
+    /// logs do not; `null` in JSON without one.
     pub next: Option<Next>,
     /// Effects that these logs cannot show, each with the manoeuvre that would.
     pub not_testable: Vec<NotTestable>,
@@ -120,8 +121,8 @@ pub struct Cause {
     /// When it began, where not before the logs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub begins: Option<Beginning>,
-    /// How far the gap shrinks on runs that were not fitted; on all where all were.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// How far the gap shrinks on runs that were not fitted; on all where all were. `null` in JSON where it
+    /// was not worked out.
     pub shrink: Option<Shrink>,
 }
 
@@ -214,11 +215,15 @@ pub struct Together {
 pub struct Next {
     /// Name of the scripted manoeuvre.
     pub manoeuvre: String,
-    /// Effects that it tells apart.
+    /// Effects that it tells apart; none where it is for what it tests alone.
     pub separates: Vec<&'static str>,
-    /// How well: expected logarithm of the odds, nats.
-    pub nats: f64,
-    /// The other manoeuvres that no run is of, best first.
+    /// How well it tells them apart: expected logarithm of the odds, nats; `null` in JSON where it is for
+    /// what it tests alone.
+    pub nats: Option<f64>,
+    /// Effects that these logs do not test, or not at every wheel, and that it would.
+    pub tests: Vec<&'static str>,
+    /// The other manoeuvres, best first: those that no run is of or, where it is for what it tests alone,
+    /// those that test something too.
     pub others: Vec<Drive>,
 }
 
@@ -227,8 +232,10 @@ pub struct Next {
 pub struct Drive {
     /// Name of the scripted manoeuvre.
     pub manoeuvre: String,
-    /// How well it tells apart: expected logarithm of the odds, nats.
-    pub nats: f64,
+    /// How well it tells apart: expected logarithm of the odds, nats; `null` in JSON as in [`Next`].
+    pub nats: Option<f64>,
+    /// Effects that these logs do not test, or not at every wheel, and that it would.
+    pub tests: Vec<&'static str>,
 }
 
 /// An effect that stays in the dark.

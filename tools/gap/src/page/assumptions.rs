@@ -1,7 +1,7 @@
 //! What was taken for granted, what would settle it, what is wrong with the logs.
 
+use super::ahead::{after_that, how_well, purpose};
 use super::svg::escape;
-use super::words::{after_that, how_well, rivals};
 use crate::diagnosis::{Details, Diagnosis, Knob};
 
 /// Faults of logs listed.
@@ -48,9 +48,9 @@ pub(super) fn settles(diagnosis: &Diagnosis) -> String {
     let mut items = Vec::new();
     if let Some(next) = &diagnosis.next {
         items.push(format!(
-            "Drive {}: it tells {} apart{}.",
+            "Drive {}: it {}{}.",
             next.manoeuvre,
-            rivals(next, " and "),
+            purpose(next, " and "),
             how_well(next)
         ));
         if !next.others.is_empty() {

@@ -4,12 +4,13 @@ use core::fmt::Write as _;
 
 use xt28_machine::Machine;
 
+use super::ahead::purpose;
 use super::caption::small_gaps;
 use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
 use super::svg::{Anchor, Svg, escape};
-use super::words::{estimate, judged_on, on, percent, rivals, shrinks};
+use super::words::{estimate, judged_on, on, percent, shrinks};
 use crate::diagnosis::{Cause, Details, Diagnosis, ShareOf, Verdict};
 
 /// The page's body.
@@ -167,9 +168,9 @@ fn next(diagnosis: &Diagnosis) -> String {
     if let Some(next) = &diagnosis.next {
         let _ = write!(
             out,
-            "<p>To be surer, drive <b>{}</b>: it tells {} apart.</p>",
+            "<p>To be surer, drive <b>{}</b>: it {}.</p>",
             escape(&next.manoeuvre),
-            escape(&rivals(next, " and "))
+            escape(&purpose(next, " and "))
         );
     }
     out

@@ -2,12 +2,10 @@
 
 use core::fmt::Write as _;
 
+use super::ahead::{after_that, how_well, purpose};
 use super::caption::{how_to_read_shares, share_of, small_gaps};
 use super::headline;
-use super::words::{
-    after_that, elsewhere, estimate, how_well, is_elsewhere, judged_on, percent, rivals, short,
-    shrink,
-};
+use super::words::{elsewhere, estimate, is_elsewhere, judged_on, percent, short, shrink};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -40,9 +38,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
     if let Some(next) = &diagnosis.next {
         let _ = writeln!(
             out,
-            "\nwhat to drive next\n  {}: tells {} apart{}",
+            "\nwhat to drive next\n  {}: {}{}",
             next.manoeuvre,
-            rivals(next, ", "),
+            purpose(next, ", "),
             how_well(next)
         );
         if !next.others.is_empty() {

@@ -3,10 +3,7 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Drive, Estimate, Next, Shrink, WORTH_TELLING};
-
-/// Beyond this many nats, odds of a thousand, a figure says no more than a word: models are not that good.
-const EASILY_NATS: f64 = 7.0;
+use crate::diagnosis::{Cause, Estimate, Shrink, WORTH_TELLING};
 
 /// Wheels that a cause may be at of which each is told.
 const ELSEWHERE: usize = 4;
@@ -18,28 +15,6 @@ pub(super) const fn judged_on(held_out_runs: &[String]) -> &'static str {
     } else {
         "runs that were not fitted"
     }
-}
-
-/// What a drive tells apart.
-pub(super) fn rivals(next: &Next, joined_by: &str) -> String {
-    let name = |name: &&'static str| if *name == "none" { "no effect" } else { *name };
-    next.separates.iter().map(name).collect::<Vec<_>>().join(joined_by)
-}
-
-/// How well a drive tells causes apart, after "apart".
-pub(super) fn how_well(next: &Next) -> String {
-    if next.nats > EASILY_NATS {
-        " easily".to_owned()
-    } else {
-        format!(", {:.1} nats expected (odds of {:.0} to 1)", next.nats, next.nats.exp())
-    }
-}
-
-/// The drives that would tell less, best first; empty without any.
-pub(super) fn after_that(next: &Next) -> String {
-    let of = |drive: &Drive| format!("{} ({:.1} nats)", drive.manoeuvre, drive.nats);
-    let all: Vec<String> = next.others.iter().map(of).collect();
-    if all.is_empty() { String::new() } else { format!("next best: {}", all.join(", ")) }
 }
 
 /// The wheels of a scope, in words.
@@ -156,18 +131,5 @@ mod tests {
     fn no_shrink_is_less_than_nothing_by_nothing() {
         assert_eq!(shrinks(-0.004), "0 %");
         assert_eq!(shrinks(-0.2), "-20 %");
-    }
-
-    #[test]
-    fn a_drive_that_tells_with_ease_has_no_figure() {
-        let next = |nats| Next {
-            manoeuvre: String::new(),
-            separates: vec!["a", "none"],
-            nats,
-            others: Vec::new(),
-        };
-        assert_eq!(how_well(&next(549_918.9)), " easily");
-        assert_eq!(how_well(&next(3.0)), ", 3.0 nats expected (odds of 20 to 1)");
-        assert_eq!(rivals(&next(3.0), " and "), "a and no effect");
     }
 }

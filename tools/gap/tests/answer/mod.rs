@@ -93,8 +93,13 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         next: Some(Next {
             manoeuvre: HOSTILE.to_owned(),
             separates: vec!["arm-delay", "valve-lag"],
-            nats: 3.1,
-            others: vec![Drive { manoeuvre: HOSTILE.to_owned(), nats: 1.2 }],
+            nats: Some(3.1),
+            tests: vec!["steer-lag"],
+            others: vec![Drive {
+                manoeuvre: HOSTILE.to_owned(),
+                nats: Some(1.2),
+                tests: Vec::new(),
+            }],
         }),
         not_testable: vec![NotTestable {
             effect: find("steer-lag").unwrap(),

@@ -30,6 +30,7 @@ mod overlap;
 mod search;
 mod signals;
 mod stands;
+mod unshrunk;
 mod verdict;
 mod wheel_order;
 

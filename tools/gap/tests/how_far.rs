@@ -5,7 +5,8 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use xt28_gap::diagnosis::{
-    Cause, DT_S, Estimate, FieldRun, Horizon, HowFar, Inquiry, Quantity, overlay,
+    Cause, DT_S, Diagnosis, Estimate, FieldRun, Horizon, HowFar, Inquiry, Quantity, ShareOf,
+    Verdict, overlay,
 };
 use xt28_gap::{Decoder, FieldLog, Mapping, Terrain};
 use xt28_machine::{Axle, Machine, Wheel};
@@ -80,6 +81,42 @@ fn twice_the_same_is_the_same() {
     assert_eq!(a.black_box(), b.black_box());
     assert_eq!(a.shrink(&a.with(&truth)), b.shrink(&b.with(&truth)));
     assert_eq!(a.traces(1, &a.with(&truth)), b.traces(1, &b.with(&truth)));
+}
+
+#[test]
+fn a_cause_that_is_stood_by_and_shrinks_nothing_is_noted() {
+    let said = |truth: &[Cause]| {
+        let named = cause("throttle-delay", Scope::All, &[("delay_s", 0.3)]);
+        let mut diagnosis = answer(vec![named]);
+        driven(truth).complete(&mut diagnosis, &|_, _| ());
+        assert_eq!(diagnosis.notes, diagnosis.unshrunk());
+        diagnosis.notes
+    };
+    let [note] = &said(&[])[..] else { panic!("nothing is late") };
+    assert!(note.starts_with("throttle-delay is named by its evidence"), "{note}");
+    let truth = cause("throttle-delay", Scope::All, &[("delay_s", 0.3)]);
+    assert_eq!(said(&[truth]), Vec::<String>::new());
+}
+
+/// A verdict that stands by `causes`, before it is said how far they shrink the gap.
+fn answer(causes: Vec<Cause>) -> Diagnosis {
+    Diagnosis {
+        verdict: Verdict::Effect,
+        places: Vec::new(),
+        share_of: ShareOf::Squares,
+        unexplained: None,
+        causes,
+        probability_none: 0.0,
+        probability_unknown: 0.0,
+        together: None,
+        held_out_runs: vec!["drive".to_owned()],
+        looked_ahead: false,
+        next: None,
+        not_testable: Vec::new(),
+        notes: Vec::new(),
+        log_faults: Vec::new(),
+        seconds: 0.0,
+    }
 }
 
 /// The arms' measured strokes take away what a wrong arm does; the joints' angles do not.

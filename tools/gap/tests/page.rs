@@ -250,3 +250,22 @@ fn what_was_not_asked_is_not_said_to_be_settled() {
     assert!(!page.contains("There is no gap"));
     assert!(page.contains("lock-stiffness of each arm ±2 %"), "tolerances of the arms count too");
 }
+
+#[test]
+fn a_cause_that_shrinks_nothing_is_said_to_once_on_each_page_and_in_the_notes() {
+    let mut idle = diagnosis(Verdict::Effect);
+    assert_eq!(idle.unshrunk(), Vec::<String>::new());
+    let shrink = idle.causes[1].shrink.as_mut().unwrap();
+    shrink.interval = [[0.1, 0.2], [-0.1, 0.2], [0.1, 0.3]];
+    assert_eq!(idle.unshrunk(), Vec::<String>::new(), "over whole runs it does");
+    idle.causes[1].shrink.as_mut().unwrap().interval[2] = [-0.2, 0.1];
+    let [said] = &idle.unshrunk()[..] else { panic!("one of the two") };
+    let words = "leakage-drift is named by its evidence, but putting it in by itself does not shrink the gap \
+                 on the held-out runs";
+    assert!(said.starts_with(words), "{said}");
+    idle.notes.push(said.clone());
+    assert_eq!(page_of(&idle).matches(words).count(), 2);
+    assert!(text(&idle).contains(words));
+    idle.verdict = Verdict::Unknown;
+    assert_eq!(idle.unshrunk(), Vec::<String>::new(), "it is not stood by");
+}

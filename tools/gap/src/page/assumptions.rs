@@ -21,7 +21,9 @@ pub(super) fn assumed(diagnosis: &Diagnosis, details: &Details) -> String {
             .to_owned(),
         "At most two effects are there at once, each alike on all wheels of one scope.".to_owned(),
     ];
-    let notes = diagnosis.notes.iter().filter(|note| !details.faults.contains(note));
+    // Those have a place of their own.
+    let told = [&details.faults, &diagnosis.unshrunk()].map(Clone::clone).concat();
+    let notes = diagnosis.notes.iter().filter(|note| !told.contains(note));
     items.extend(notes.cloned());
     list(&items)
 }

@@ -5,7 +5,7 @@ use core::fmt::Write as _;
 use xt28_machine::Machine;
 
 use super::ahead::purpose;
-use super::caption::small_gaps;
+use super::caption::{small_gaps, unshrunk};
 use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
@@ -102,9 +102,10 @@ fn shrinking(diagnosis: &Diagnosis) -> String {
         svg.text([350.0, y + 14.0], &format!("{} less", shrinks(share)), Anchor::End, 12.0, INK);
     }
     format!(
-        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on {}.</p>",
+        "{}<p class=\"small\">Blue is what is left of the gap between simulator and machine, on {}.</p>{}",
         svg.finish("What is left of the gap at three horizons"),
-        judged_on(&diagnosis.held_out_runs)
+        judged_on(&diagnosis.held_out_runs),
+        unshrunk(diagnosis)
     )
 }
 

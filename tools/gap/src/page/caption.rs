@@ -1,5 +1,7 @@
-//! What stands below the gaps: how they were told, what their shares are of, what a small one means.
+//! What stands below the gaps: how they were told, what their shares are of, what a small one means, and
+//! which causes do not shrink them.
 
+use super::svg::escape;
 use crate::diagnosis::{Diagnosis, SHIFT_MAX, ShareOf, Verdict};
 
 /// Gaps below this, in floors, may look like nothing beside a cause that is stood by.
@@ -52,4 +54,10 @@ pub(super) fn small_gaps(diagnosis: &Diagnosis) -> Option<&'static str> {
          error, 1 where it is as large as what two models of one sound machine differ by; a cause is told by the \
          pattern over time of many samples, which can be plain where the error is small.",
     )
+}
+
+/// The causes stood by that shrink no gap, a paragraph each.
+pub(super) fn unshrunk(diagnosis: &Diagnosis) -> String {
+    let paragraph = |said: String| format!("<p>{}</p>", escape(&said));
+    diagnosis.unshrunk().into_iter().map(paragraph).collect()
 }

@@ -4,7 +4,7 @@
 use core::fmt::Write as _;
 
 use super::colour::{AFTER, BEFORE, INK};
-use super::{assumptions, heat, horizon, table, trace};
+use super::{assumptions, caption, heat, horizon, table, trace};
 use crate::diagnosis::{Details, Diagnosis};
 
 /// The page's body.
@@ -22,8 +22,9 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
     }
     let _ = write!(
         out,
-        "<h2>What: causes</h2>{}{}",
+        "<h2>What: causes</h2>{}{}{}",
         table::causes(diagnosis),
+        caption::unshrunk(diagnosis),
         table::together(diagnosis)
     );
     let _ = write!(

@@ -44,6 +44,7 @@ impl HowFar {
                 cause.shrink = Some(alone.filter(|_| stands).unwrap_or_else(shrink));
             }
         }
+        diagnosis.notes.extend(diagnosis.unshrunk());
     }
 
     /// Shares of the whole machine's gap, a block's dealt out among its places by their own gaps.

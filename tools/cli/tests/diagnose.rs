@@ -50,6 +50,31 @@ fn an_answer_comes_as_text_json_report_and_overlay() {
     assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
+/// Of one drive straight ahead of a sound machine nothing is left to tell apart, and much is not tested.
+#[test]
+fn json_names_the_drive_that_is_written_also_where_it_is_for_what_no_log_tests() {
+    let out = tempfile::tempdir().unwrap();
+    let [log, json, next] = ["a.log", "a.json", "next.toml"].map(|name| path(out.path(), name));
+    let driven = xt28(&["run", "straight-25m", "--solver", "reduced", "--record", &log]);
+    assert_ne!(driven.status.code(), Some(2), "{driven:?}");
+    let answer = ["gap", "diagnose", &log, "--dbc", DBC, "--no-how-far", "--json", &json];
+    let output = xt28(&[&answer[..], &["--next", &next]].concat());
+    let talk = String::from_utf8(output.stderr).unwrap();
+    let answer: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    let drive = &answer["next"];
+    assert!(drive["nats"].is_null() && drive["separates"] == serde_json::json!([]), "{drive}");
+    let not_testable = answer["not_testable"].as_array().unwrap().iter();
+    let tested: Vec<_> = not_testable
+        .filter(|one| one["manoeuvre"] == drive["manoeuvre"])
+        .map(|one| one["effect"].clone())
+        .collect();
+    assert!(!tested.is_empty(), "{talk}");
+    assert_eq!(drive["tests"], serde_json::json!(tested));
+    let scenario = fs::read_to_string(&next).unwrap();
+    assert!(scenario.contains(drive["manoeuvre"].as_str().unwrap()), "{scenario}");
+}
+
 #[test]
 fn every_manoeuvre_runs_as_a_scenario_and_leaves_the_machine_on_its_wheels() {
     let folder = tempfile::tempdir().unwrap();

@@ -190,6 +190,13 @@ fn what_is_unknown_is_sought_where_the_objection_is() {
     });
     assert!(headline(&unknown).contains("foremost in roll (prob"), "{}", headline(&unknown));
     assert!(page_of(&unknown).contains("Look at what on the machine makes its roll:"));
+    unknown.causes = diagnosis(Verdict::Unknown).causes;
+    unknown.places[0].gap_over_noise = 62.0;
+    let words = headline(&unknown);
+    assert!(words.contains("the largest gap, 62 floors, is in "), "{words}");
+    assert!(words.ends_with("; arm-delay fits best."), "{words}");
+    unknown.places[0].gap_over_noise = 2.0;
+    assert!(!headline(&unknown).contains("the largest gap"));
 }
 
 #[test]

@@ -8,21 +8,19 @@
 mod allowed;
 mod beginning;
 mod causes;
+mod notes;
 mod objection;
 mod places;
 
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
-use super::floors::Floors;
-use super::hypothesis::Fit;
 use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
 use super::verdict::{Diagnosis, NotTestable, ShareOf, Verdict};
-use super::wheel_order::axles_alike;
 use beginning::is_told;
 use causes::causes;
-use objection::Objection;
+use notes::notes;
 use places::{places, unexplained};
 
 /// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
@@ -159,51 +157,6 @@ fn log_faults(inquiry: &Inquiry) -> Vec<String> {
 fn held_out_runs(inquiry: &Inquiry) -> Vec<String> {
     let held = inquiry.runs.iter().filter(|run| !run.fit);
     held.map(FieldRun::file).collect()
-}
-
-fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
-    let mut notes = Vec::new();
-    if held_out_runs(inquiry).is_empty() {
-        notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
-    }
-    let shown = not_shown(inquiry, |_| true);
-    let held_alone = not_shown(inquiry, |run| run.fit).into_iter().map(|one| one.effect.name);
-    let held_alone: Vec<_> =
-        held_alone.filter(|name| shown.iter().all(|one| one.effect.name != *name)).collect();
-    if !held_alone.is_empty() {
-        notes.push(format!(
-            "only runs that were held out can show {}: fit one of them to have it judged",
-            held_alone.join(", ")
-        ));
-    }
-    notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
-    let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
-    if !alike.is_empty() {
-        notes.push(format!(
-            "the arms of one axle ({}) are never commanded apart: whether left and right are in their \
-             places there is as the mapping has it",
-            alike.join(", ")
-        ));
-    }
-    let believed: Vec<String> = findings
-        .believed()
-        .map(|Candidate { fit: Fit { hypothesis, .. }, .. }| {
-            format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
-        })
-        .collect();
-    if verdict == Verdict::Unknown {
-        let Objection { times, why, .. } = findings.objection();
-        let best = if believed.is_empty() {
-            "nothing in the catalogue explains anything, but something is the matter".to_owned()
-        } else {
-            let best = believed.join(" beside ");
-            format!("{best} fits best of all in the catalogue, but is not believed")
-        };
-        notes.push(format!(
-            "{best}, because {why}: {times:.1} times the most that a right answer would"
-        ));
-    }
-    notes
 }
 
 /// Probability that `value` stands for: a half at the first of `scale`, and as sharp as the second says.

@@ -1,12 +1,14 @@
 //! The verdict in one sentence, no surer than the logs make it.
 
 use super::words::{by_share, on, percent};
-use crate::diagnosis::{Cause, Diagnosis, Verdict};
+use crate::diagnosis::{Cause, Diagnosis, Spot, Verdict};
 
 /// How likely, beside the likeliest, other wheels have to be to be in the headline.
 const SAID_ABOVE: f64 = 0.25;
 /// How likely another answer has to be to be told beside the verdict.
 const BESIDE_ABOVE: f64 = 0.25;
+/// How many floors a gap has to be to be told beside one that nothing explains.
+const LARGER: f64 = 5.0;
 
 /// The verdict in one sentence.
 #[must_use]
@@ -23,13 +25,14 @@ pub fn headline(diagnosis: &Diagnosis) -> String {
         Verdict::None => nothing(diagnosis, true),
         Verdict::Unknown => unknown(diagnosis, other.is_some()),
     };
-    let untested = match (diagnosis.verdict, diagnosis.not_testable.len()) {
+    let beside = match (diagnosis.verdict, diagnosis.not_testable.len()) {
         (Verdict::None, untested @ 1..) => format!("; effects that they cannot: {untested}"),
+        (Verdict::Unknown, _) => larger(diagnosis).unwrap_or_default(),
         _ => String::new(),
     };
     match other {
-        Some(other) => format!("{said}, or {other}: these logs do not tell which{untested}."),
-        None => format!("{said}{untested}."),
+        Some(other) => format!("{said}, or {other}: these logs do not tell which{beside}."),
+        None => format!("{said}{beside}."),
     }
 }
 
@@ -71,13 +74,29 @@ fn unknown(diagnosis: &Diagnosis, perhaps: bool) -> String {
     )
 }
 
+/// A gap far larger than that of the signal that nothing known explains: who looks for the fault would look
+/// past it.
+fn larger(diagnosis: &Diagnosis) -> Option<String> {
+    let (strange, place) = (diagnosis.unexplained.as_ref()?, diagnosis.places.first()?);
+    let is_larger = place.spot != *strange && place.gap_over_noise > LARGER;
+    let best = diagnosis.causes.first().map(|cause| cause.effect.name);
+    let best = best.map_or_else(String::new, |name| format!("; {name} fits best"));
+    is_larger.then(|| {
+        let gap = place.gap_over_noise;
+        format!("; the largest gap, {gap:.0} floors, is in {}{best}", of_wheels(&place.spot))
+    })
+}
+
 /// The signal that nothing known explains: the one that speaks against the best of the catalogue, else
 /// the one that parts most.
 pub(super) fn spot(diagnosis: &Diagnosis) -> Option<String> {
     let largest = diagnosis.places.first().map(|place| &place.spot);
-    let spot = diagnosis.unexplained.as_ref().or(largest)?;
+    diagnosis.unexplained.as_ref().or(largest).map(of_wheels)
+}
+
+fn of_wheels(spot: &Spot) -> String {
     let wheels = if spot.has_wheels() { format!(" ({})", on(spot.scope)) } else { String::new() };
-    Some(format!("{}{wheels}", spot.residual))
+    format!("{}{wheels}", spot.residual)
 }
 
 /// Something is wrong, and nothing is likelier than not.

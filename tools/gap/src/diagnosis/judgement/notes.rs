@@ -1,0 +1,102 @@
+//! What a reader of the verdict should know beside it, a sentence each.
+
+use super::super::candidates::Candidate;
+use super::super::floor::Signal;
+use super::super::floors::Floors;
+use super::super::hypothesis::Fit;
+use super::super::inquiry::Inquiry;
+use super::super::verdict::Verdict;
+use super::super::wheel_order::axles_alike;
+use super::objection::Objection;
+use super::{Findings, held_out_runs, not_shown};
+
+/// A gap beyond this is no other machine's, but may be another wheel's.
+const WHEELS_APART: f64 = 5.0;
+
+/// The notes on `findings` that came to this verdict.
+pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
+    let mut notes = Vec::new();
+    if held_out_runs(inquiry).is_empty() {
+        notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
+    }
+    notes.extend(shown_by_held_alone(inquiry));
+    notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
+    let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
+    if !alike.is_empty() {
+        notes.push(format!(
+            "the arms of one axle ({}) are never commanded apart: whether left and right are in their \
+             places there is as the mapping has it",
+            alike.join(", ")
+        ));
+    }
+    if verdict == Verdict::Unknown {
+        notes.extend(findings.another_order());
+        notes.push(findings.why_unknown());
+    }
+    notes
+}
+
+/// Effects that no run that was fitted can show.
+fn shown_by_held_alone(inquiry: &Inquiry) -> Option<String> {
+    let shown = not_shown(inquiry, |_| true);
+    let not_fitted = not_shown(inquiry, |run| run.fit).into_iter().map(|one| one.effect.name);
+    let held: Vec<_> =
+        not_fitted.filter(|name| shown.iter().all(|one| one.effect.name != *name)).collect();
+    (!held.is_empty()).then(|| {
+        let names = held.join(", ");
+        format!("only runs that were held out can show {names}: fit one of them to have it judged")
+    })
+}
+
+impl Findings {
+    /// Wheels that a mapping has in another order make a machine that stands as no machine does, while
+    /// commands and readings agree.
+    fn another_order(&self) -> Option<String> {
+        let tells = |signal| {
+            use Signal::{ArmOpening, Contact, DriveDifference, Roll, WeightX, WeightY};
+            matches!(signal, ArmOpening | Contact(_) | DriveDifference | Roll | WeightX | WeightY)
+        };
+        let both = self.alone.iter().chain(&self.held.unbent);
+        let apart = |floors: f64| floors * floors;
+        let worst = both.max_by(|a, b| a.square.total_cmp(&b.square))?;
+        (tells(worst.signal) && worst.square > apart(WHEELS_APART)).then(|| {
+            "wheels in another order than the mapping has them look like this too: compare the names of \
+             wheels in the DBC and the mapping with the machine"
+                .to_owned()
+        })
+    }
+
+    fn why_unknown(&self) -> String {
+        let believed = self.believed().map(|Candidate { fit: Fit { hypothesis, .. }, .. }| {
+            format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
+        });
+        let believed: Vec<String> = believed.collect();
+        let best = if believed.is_empty() {
+            "nothing in the catalogue explains anything, but something is the matter".to_owned()
+        } else {
+            let best = believed.join(" beside ");
+            format!("{best} fits best of all in the catalogue, but is not believed")
+        };
+        let Objection { times, why, .. } = self.objection();
+        format!("{best}, because {why}: {times:.1} times the most that a right answer would")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::evidence::Left;
+    use super::super::super::generator::Generator;
+    use super::*;
+
+    #[test]
+    fn a_machine_that_stands_askew_may_have_its_wheels_in_another_order() {
+        let of = |signal, floors: f64| {
+            let (generator, square, samples) = (Generator::Stance, floors * floors, 30.0);
+            let alone = vec![Left { generator, signal, square, steady: square, samples }];
+            Findings { alone, ..Findings::default() }.another_order().is_some()
+        };
+        assert!(of(Signal::Roll, 18.0));
+        assert!(!of(Signal::Roll, 3.0));
+        assert!(!of(Signal::Pitch, 18.0));
+    }
+}

@@ -1,35 +1,20 @@
 //! Logs as they come from the field: whole, cut, thinned, shuffled, with another DBC, or no logs at
 //! all. Each is read or refused in one line that says where and what to do.
 
+mod frames;
+
 use std::io::Write as _;
 use std::path::Path;
 
+use frames::{DBC, decoder, once};
 use proptest::prelude::*;
 use xt28_gap::{Channel, Decoder, FaultKind, FieldLog, GapError, Mapping, Replay, Terrain};
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::{Effects, Solver};
 
-const DBC: &str = include_str!("field.dbc");
-
-fn decoder() -> Decoder {
-    Decoder::parse(DBC, Path::new("field.dbc"), &Mapping::default()).unwrap()
-}
-
 /// One period of every message a replay needs, at `ms`.
 fn period(ms: u32) -> String {
-    let frames = [
-        "0CFF4027#5555555555551299",
-        "0CFF4127#00000000780201A6",
-        "18FE1025#2800280028002900",
-        "18FE1026#2A002B00",
-        "18FE2020#F505F5050C030C03",
-        "18FE202A#2C0F2C0F",
-        "18FE202B#28000000FAFF0A00",
-        "18FE1012#00000000640038FF",
-        "0CFF5229#FE0310C0FF020080",
-    ];
-    let line = |frame: &&str| format!("(10.{ms:03}000) can0 {frame}\n");
-    frames.iter().map(line).collect()
+    once(&format!("10.{ms:03}000"))
 }
 
 fn log() -> String {

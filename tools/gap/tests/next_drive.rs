@@ -1,15 +1,15 @@
 //! The next test drive must move what the rivals differ in.
 
+mod frames;
 mod made_up;
 
-use std::path::Path;
-
+use frames::{decoder, once};
 use made_up::{signals, swinging};
+use xt28_gap::FieldLog;
 use xt28_gap::diagnosis::{
     Cause, Diagnosis, Estimate, FieldRun, Inquiry, NotTestable, ShareOf, Verdict, next_drive,
     untested_drive,
 };
-use xt28_gap::{Decoder, FieldLog, Mapping};
 use xt28_machine::Machine;
 use xt28_sim::effects::find;
 
@@ -18,21 +18,7 @@ fn inquiry() -> Inquiry {
 }
 
 fn inquiry_of(names: &[&str]) -> Inquiry {
-    let decoder =
-        Decoder::parse(include_str!("field.dbc"), Path::new("field.dbc"), &Mapping::default());
-    let frames = [
-        "0CFF4027#5555555555551299",
-        "0CFF4127#00000000780201A6",
-        "18FE1025#2800280028002900",
-        "18FE1026#2A002B00",
-        "18FE2020#F505F5050C030C03",
-        "18FE202A#2C0F2C0F",
-        "18FE202B#28000000FAFF0A00",
-        "18FE1012#00000000640038FF",
-        "0CFF5229#FE0310C0FF020080",
-    ];
-    let text: String = frames.iter().map(|frame| format!("(1.0) can0 {frame}\n")).collect();
-    let decoder = decoder.unwrap();
+    let (text, decoder) = (once("1.0"), decoder());
     let [signals] = signals(&swinging());
     let run = |name: &&str| {
         let log = FieldLog::read(text.as_bytes(), name, &decoder, false).unwrap();

@@ -1,6 +1,7 @@
 //! The two pages: nothing in a log breaks out of its text, nothing is fetched, every number is one.
 
 mod answer;
+mod frames;
 mod made_up;
 
 use answer::{diagnosis, inquiry, page, page_of};

@@ -1,6 +1,7 @@
 //! What the pages say of gaps: which are shown, how they were told, what a small one means.
 
 mod answer;
+mod frames;
 mod made_up;
 
 use answer::{diagnosis, inquiry, page, page_of};

@@ -1,32 +1,20 @@
 //! Which run is meant by a name, and what is refused: nothing is guessed.
 
-use std::path::Path;
+mod frames;
 
-use xt28_gap::{Choice, Decoder, FieldLog, GapError, KnownRun, Mapping, RunSet, Terrain, Use};
+use frames::{decoder, once};
+use xt28_gap::{Choice, FieldLog, GapError, KnownRun, RunSet, Terrain, Use};
 
 /// A run whose frames differ from another's by `seed`.
 fn run(file: &str, scenario: Option<&str>, advised: Option<bool>, seed: u8) -> KnownRun {
-    let decoder =
-        Decoder::parse(include_str!("field.dbc"), Path::new("field.dbc"), &Mapping::default());
-    let frames = [
-        "0CFF4027#5555555555551299",
-        "0CFF4127#00000000780201A6",
-        "18FE1025#2800280028002900",
-        "18FE1026#2A002B00",
-        "18FE2020#F505F5050C030C03",
-        "18FE202A#2C0F2C0F",
-        "18FE202B#28000000FAFF0A00",
-        "18FE1012#00000000640038FF",
-        "0CFF5229#FE0310C0FF020080",
-    ];
-    let text: String = frames.iter().map(|f| format!("(1.{seed:02}0000) can0 {f}\n")).collect();
-    let text = text + &format!("(2.{seed:02}0000) can0 18FE1026#{seed:02X}002B00\n");
+    let text = once(&format!("1.{seed:02}0000"))
+        + &format!("(2.{seed:02}0000) can0 18FE1026#{seed:02X}002B00\n");
     KnownRun {
         file: file.to_owned(),
         scenario: scenario.map(str::to_owned),
         advised,
         terrain: Terrain::Flat,
-        log: FieldLog::read(text.as_bytes(), file, &decoder.unwrap(), false).unwrap(),
+        log: FieldLog::read(text.as_bytes(), file, &decoder(), false).unwrap(),
     }
 }
 

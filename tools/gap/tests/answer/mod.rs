@@ -1,40 +1,23 @@
 //! A made-up answer and the logs that it is of, with a name in every text that must be escaped.
 
-use std::path::Path;
-
+use xt28_gap::FieldLog;
 use xt28_gap::diagnosis::{
     Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Inquiry, Next, NotTestable, Place,
     ShareOf, Shrink, Spot, Together, Verdict,
 };
 use xt28_gap::page::{Subject, html};
-use xt28_gap::{Decoder, FieldLog, Mapping};
 use xt28_machine::Machine;
 use xt28_sim::effects::{Block, find};
 
+use crate::frames::{decoder, once};
 use crate::made_up::{signals, swinging};
 
 /// A name that would be a program, if a browser took it for one.
 pub(crate) const HOSTILE: &str = "<script>alert('1')</script>&\".log";
 
 pub(crate) fn inquiry() -> Inquiry {
-    let decoder =
-        Decoder::parse(include_str!("../field.dbc"), Path::new("field.dbc"), &Mapping::default());
-    let frames = [
-        "0CFF4027#5555555555551299",
-        "0CFF4127#00000000780201A6",
-        "18FE1025#2800280028002900",
-        "18FE1026#2A002B00",
-        "18FE2020#F505F5050C030C03",
-        "18FE202A#2C0F2C0F",
-        "18FE202B#28000000FAFF0A00",
-        "18FE1012#00000000640038FF",
-        "0CFF5229#FE0310C0FF020080",
-    ];
-    let text: String = [1, 9]
-        .iter()
-        .flat_map(|s| frames.iter().map(move |frame| format!("({s}.0) can0 {frame}\n")))
-        .collect();
-    let log = FieldLog::read(text.as_bytes(), HOSTILE, &decoder.unwrap(), false).unwrap();
+    let text = once("1.0") + &once("9.0");
+    let log = FieldLog::read(text.as_bytes(), HOSTILE, &decoder(), false).unwrap();
     assert!(!log.faults().is_empty(), "the pause is a fault with the log's name in it");
     let [signals] = signals(&swinging());
     let run = |fit| FieldRun { log: log.clone(), signals: signals.clone(), fit };

@@ -21,6 +21,8 @@ const SHIFT: f64 = 4.4;
 /// How much more a right answer may leave of a signal of the runs held out: they are few, and no scale was
 /// settled on them.
 const HELD: f64 = 1.5;
+/// Share of a gap's square beyond which the causes believed explain none of it there.
+const STRANGE: f64 = 0.64;
 
 /// Something that a right answer would not leave so large.
 #[derive(Clone, Debug)]
@@ -60,11 +62,14 @@ impl Findings {
         })
     }
 
-    /// The same of the runs held out: what only they show was not fitted, and is not explained either.
+    /// The same of the runs held out, of gaps that only they show: how well a cause foretells what it
+    /// explains is in its evidence already.
     pub(super) fn held_left(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
         let Held { unbent, after, shifts } = &self.held;
-        let left = unbent.iter().zip(after).map(move |(before, after)| Objection {
+        let each = unbent.iter().zip(after);
+        let strange = each.filter(|(before, after)| after.square > STRANGE * before.square);
+        let left = strange.map(move |(before, after)| Objection {
             times: excess(&names, [before, after], 0.0) / HELD,
             why: format!("{} in the runs held out", how_much([before, after])),
             at: Some((after.generator, after.signal)),
@@ -169,6 +174,20 @@ mod tests {
         assert!(of(1.4).times < 1.0);
         let loud = of(9.0);
         assert!(loud.is_held && loud.times > 3.0 && loud.why.contains("held out"), "{loud:?}");
+    }
+
+    #[test]
+    fn what_is_explained_of_runs_held_out_in_part_is_for_the_evidence_to_weigh() {
+        let of = |after: f64| {
+            let generator = Generator::Drive;
+            let left = |floors: f64| {
+                let (signal, square) = (Signal::DrivePressure, floors * floors);
+                vec![Left { generator, signal, square, steady: square, samples: 100.0 }]
+            };
+            let held = Held { unbent: left(20.0), after: left(after), ..Held::default() };
+            Findings { held, ..Findings::default() }.objection().times
+        };
+        assert!(of(12.0) < 1.0 && of(19.0) > 3.0);
     }
 
     #[test]

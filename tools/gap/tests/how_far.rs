@@ -5,8 +5,8 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use xt28_gap::diagnosis::{
-    Cause, DT_S, Diagnosis, Estimate, FieldRun, Horizon, HowFar, Inquiry, Quantity, ShareOf,
-    Verdict, overlay,
+    Cause, DT_S, Diagnosis, Estimate, FieldRun, Horizon, HowFar, Inquiry, Quantity, Verdict,
+    overlay,
 };
 use xt28_gap::{Decoder, FieldLog, Mapping, Terrain};
 use xt28_machine::{Axle, Machine, Wheel};
@@ -100,23 +100,7 @@ fn a_cause_that_is_stood_by_and_shrinks_nothing_is_noted() {
 
 /// A verdict that stands by `causes`, before it is said how far they shrink the gap.
 fn answer(causes: Vec<Cause>) -> Diagnosis {
-    Diagnosis {
-        verdict: Verdict::Effect,
-        places: Vec::new(),
-        share_of: ShareOf::Squares,
-        unexplained: None,
-        causes,
-        probability_none: 0.0,
-        probability_unknown: 0.0,
-        together: None,
-        held_out_runs: vec!["drive".to_owned()],
-        looked_ahead: false,
-        next: None,
-        not_testable: Vec::new(),
-        notes: Vec::new(),
-        log_faults: Vec::new(),
-        seconds: 0.0,
-    }
+    Diagnosis { held_out_runs: vec!["drive".to_owned()], ..Diagnosis::of(Verdict::Effect, causes) }
 }
 
 /// The arms' measured strokes take away what a wrong arm does; the joints' angles do not.

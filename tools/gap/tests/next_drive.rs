@@ -7,8 +7,7 @@ use frames::{decoder, once};
 use made_up::{signals, swinging};
 use xt28_gap::FieldLog;
 use xt28_gap::diagnosis::{
-    Cause, Diagnosis, Estimate, FieldRun, Inquiry, NotTestable, ShareOf, Verdict, next_drive,
-    untested_drive,
+    Cause, Diagnosis, Estimate, FieldRun, Inquiry, NotTestable, Verdict, next_drive, untested_drive,
 };
 use xt28_machine::Machine;
 use xt28_sim::effects::find;
@@ -42,23 +41,7 @@ fn cause(name: &str, probability: f64, value: f64) -> Cause {
 }
 
 fn diagnosis(causes: Vec<Cause>) -> Diagnosis {
-    Diagnosis {
-        verdict: Verdict::Effect,
-        places: Vec::new(),
-        share_of: ShareOf::Squares,
-        unexplained: None,
-        causes,
-        probability_none: 0.0,
-        probability_unknown: 0.0,
-        together: None,
-        held_out_runs: Vec::new(),
-        looked_ahead: false,
-        next: None,
-        not_testable: Vec::new(),
-        notes: Vec::new(),
-        log_faults: Vec::new(),
-        seconds: 0.0,
-    }
+    Diagnosis::of(Verdict::Effect, causes)
 }
 
 #[test]

@@ -17,7 +17,7 @@ use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
-use super::verdict::{Diagnosis, NotTestable, ShareOf, Verdict};
+use super::verdict::{Diagnosis, NotTestable, Verdict};
 use beginning::is_told;
 use causes::causes;
 use notes::notes;
@@ -119,21 +119,15 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let places = places(apart, after);
     let objection = findings.objection().at.filter(|_| verdict == Verdict::Unknown);
     let mut diagnosis = Diagnosis {
-        verdict,
-        share_of: ShareOf::Squares,
         unexplained: objection.map(|at| unexplained(at, &places)),
         places,
-        causes,
         probability_none: 1.0 - any,
         probability_unknown: any - known,
-        together: None,
         held_out_runs: held_out_runs(inquiry),
-        looked_ahead: false,
-        next: None,
         not_testable: not_shown(inquiry, |run| run.fit),
         notes: notes(inquiry, findings, verdict),
         log_faults: log_faults(inquiry),
-        seconds: 0.0,
+        ..Diagnosis::of(verdict, causes)
     };
     // What is stood by has been tested.
     let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();

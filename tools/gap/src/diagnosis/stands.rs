@@ -34,7 +34,7 @@ impl Diagnosis {
 mod tests {
     use std::path::Path;
 
-    use super::super::verdict::{Estimate, ShareOf};
+    use super::super::verdict::Estimate;
     use super::*;
 
     fn cause(effect: &str, probability: f64, value: [f64; 3]) -> Cause {
@@ -52,27 +52,12 @@ mod tests {
     }
 
     fn diagnosis(verdict: Verdict) -> Diagnosis {
-        Diagnosis {
-            verdict,
-            places: Vec::new(),
-            share_of: ShareOf::Squares,
-            unexplained: None,
-            causes: vec![
-                cause("arm-delay", 0.9, [0.2, 0.19, 0.21]),
-                cause("steer-delay", 0.8, [1e9, 0.0, 2e9]),
-                cause("valve-lag", 0.4, [0.1, 0.0, 0.2]),
-            ],
-            probability_none: 0.0,
-            probability_unknown: 0.0,
-            together: None,
-            held_out_runs: Vec::new(),
-            looked_ahead: false,
-            next: None,
-            not_testable: Vec::new(),
-            notes: Vec::new(),
-            log_faults: Vec::new(),
-            seconds: 0.0,
-        }
+        let causes = vec![
+            cause("arm-delay", 0.9, [0.2, 0.19, 0.21]),
+            cause("steer-delay", 0.8, [1e9, 0.0, 2e9]),
+            cause("valve-lag", 0.4, [0.1, 0.0, 0.2]),
+        ];
+        Diagnosis::of(verdict, causes)
     }
 
     #[test]

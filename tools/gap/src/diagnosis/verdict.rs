@@ -54,6 +54,30 @@ pub enum Verdict {
     Unknown,
 }
 
+impl Diagnosis {
+    /// A verdict and its causes, with nothing said beside.
+    #[must_use]
+    pub const fn of(verdict: Verdict, causes: Vec<Cause>) -> Self {
+        Self {
+            verdict,
+            places: Vec::new(),
+            share_of: ShareOf::Squares,
+            unexplained: None,
+            causes,
+            probability_none: 0.0,
+            probability_unknown: 0.0,
+            together: None,
+            held_out_runs: Vec::new(),
+            looked_ahead: false,
+            next: None,
+            not_testable: Vec::new(),
+            notes: Vec::new(),
+            log_faults: Vec::new(),
+            seconds: 0.0,
+        }
+    }
+}
+
 /// What the shares of places add up to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

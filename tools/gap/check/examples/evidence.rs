@@ -1,6 +1,6 @@
 //! Prints what the logs of a machine say before it is judged: evidence of each cause in nats, what the
-//! best one leaves on each signal in floors, how much of that is what it explains moved in time, and where
-//! the tolerances go with it and without any.
+//! best one leaves on each signal in floors (root mean square, and the third largest of its bumps), how
+//! much of that is what it explains moved in time, and where the tolerances go with it and without any.
 //!
 //! ```sh
 //! cargo run --release -p xt28-gap-plants --example write_case -- 7 standstill-drag:left out/
@@ -69,7 +69,10 @@ fn print(findings: &Findings) {
     left.sort_by(|a, b| b.1.square.total_cmp(&a.1.square));
     for (unbent, after) in left.into_iter().take(LISTED) {
         let (before, after_floors) = (unbent.square.sqrt(), after.square.sqrt());
-        println!("    {} {}: {before:.2} to {after_floors:.2}", after.generator, after.signal);
+        println!(
+            "    {} {}: {before:.2} to {after_floors:.2}, again and again {:.1} to {:.1}",
+            after.generator, after.signal, unbent.recurring, after.recurring
+        );
     }
     let mut echoes: Vec<_> = findings.echoes.iter().collect();
     echoes.sort_by(|a, b| b.nats.total_cmp(&a.nats));

@@ -8,6 +8,7 @@
 //! `N + (N + nu) ln((RSS + nu) / (N + nu))` beyond: a block that nothing explains raises its own scale
 //! and does not drown the others.
 
+mod bumps;
 mod echo;
 mod stack;
 mod watch;
@@ -24,6 +25,7 @@ use super::floor::Signal;
 use super::generator::Generator;
 use super::knob::Knob;
 use super::signals::Signals;
+use bumps::Bumps;
 pub use echo::Echo;
 use stack::Group;
 pub(super) use watch::Memory;
@@ -58,13 +60,26 @@ pub struct Left {
     /// Mean square in units of the floor; about one where nothing but the floor is left.
     pub square: f64,
     /// The same without the samples that leave most, one in twenty-five: one bump is no law. Told by
-    /// [`Evidence::left`]; elsewhere it is `square`.
+    /// [`Evidence::left`] and [`Evidence::unbent`]; elsewhere it is `square`.
     pub steady: f64,
+    /// The third largest of its bumps at its peak, floors: what comes again and again is a law after
+    /// all. Told as `steady` is, zero elsewhere.
+    pub recurring: f64,
     /// Independent samples.
     pub samples: f64,
 }
 
 impl Left {
+    /// A signal that leaves `square` all along, without bumps.
+    pub(super) const fn evenly(
+        generator: Generator,
+        signal: Signal,
+        square: f64,
+        samples: f64,
+    ) -> Self {
+        Self { generator, signal, square, steady: square, recurring: 0.0, samples }
+    }
+
     /// What the signal costs, nats.
     pub(super) fn cost(&self) -> f64 {
         0.5 * cost_of_squares(self.square * self.samples, self.samples)
@@ -193,13 +208,9 @@ impl<'a> Evidence<'a> {
     #[must_use]
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
         let (values, sums, step) = self.answers(belief.into());
-        let mut all = self.left_at(&sums, &step);
         let each = self.watches.iter().zip(values);
-        let steady = each.flat_map(|(watch, values)| watch.steady(&watch.bent(values, &step)));
-        for (left, steady) in all.iter_mut().zip(steady) {
-            left.steady = steady;
-        }
-        all
+        let bumps = each.flat_map(|(watch, values)| watch.bumps(&watch.bent(values, &step)));
+        with_bumps(self.left_at(&sums, &step), bumps)
     }
 
     /// How much of what `belief` leaves on each signal is what it explains of what `nothing` leaves, moved
@@ -231,7 +242,8 @@ impl<'a> Evidence<'a> {
     #[must_use]
     pub fn unbent(&self) -> Vec<Left> {
         let sums = self.sums((&self.base.effects).into(), &|_| false);
-        self.left_at(&sums, &DVector::zeros(self.knobs.len()))
+        let bumps = self.watches.iter().flat_map(|watch| watch.bumps(&watch.stack.values));
+        with_bumps(self.left_at(&sums, &DVector::zeros(self.knobs.len())), bumps)
     }
 
     /// What the base leaves on each signal, tolerances at their best beside `belief`, but none further
@@ -249,13 +261,8 @@ impl<'a> Evidence<'a> {
         let mut all = Vec::new();
         for (watch, squares) in self.watches.iter().zip(self.remaining(sums, step)) {
             for (group, square) in watch.stack.groups.iter().zip(squares) {
-                all.push(Left {
-                    generator: watch.stack.generator,
-                    signal: group.signal,
-                    square: square / group.samples.max(1.0),
-                    steady: square / group.samples.max(1.0),
-                    samples: group.samples,
-                });
+                let square = square / group.samples.max(1.0);
+                all.push(Left::evenly(watch.stack.generator, group.signal, square, group.samples));
             }
         }
         all
@@ -350,6 +357,14 @@ impl<'a> Evidence<'a> {
         };
         self.watches.iter().zip(sums.iter().map(Cow::as_ref)).map(of).collect()
     }
+}
+
+/// What each signal leaves, with its bumps.
+fn with_bumps(mut all: Vec<Left>, bumps: impl Iterator<Item = Bumps>) -> Vec<Left> {
+    for (left, Bumps { steady, recurring }) in all.iter_mut().zip(bumps) {
+        (left.steady, left.recurring) = (steady, recurring);
+    }
+    all
 }
 
 /// What it costs that a signal of `samples` independent samples leaves `square`, its scale at its best.

@@ -173,8 +173,7 @@ mod tests {
     }
 
     fn left(square: f64) -> Vec<Left> {
-        let generator = Generator::ArmStroke(Wheel::Fr);
-        vec![Left { generator, signal: Signal::Stroke, square, steady: square, samples: 100.0 }]
+        vec![Left::evenly(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, square, 100.0)]
     }
 
     fn judged(before: f64, after: f64, single: Vec<Candidate>) -> Diagnosis {

@@ -33,13 +33,7 @@ mod tests {
 
     fn left(squares: [f64; 2]) -> Vec<Left> {
         let signals = [Signal::Stroke, Signal::Weight];
-        let of = |(signal, square)| Left {
-            generator: Generator::Stance,
-            signal,
-            square,
-            steady: square,
-            samples: 50.0,
-        };
+        let of = |(signal, square)| Left::evenly(Generator::Stance, signal, square, 50.0);
         signals.into_iter().zip(squares).map(of).collect()
     }
 

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
+use super::bumps::Bumps;
 use super::echo::{Echo, Filter};
 use super::stack::{Group, STEP_S, Stack};
 use crate::diagnosis::belief::{Base, Belief};
@@ -15,9 +16,6 @@ use crate::diagnosis::signals::Signals;
 
 /// Share of a knob's tolerance by which it is nudged.
 const NUDGE: f64 = 0.05;
-
-/// Share of the samples of a signal that may be bumps.
-const BUMPS: f64 = 0.04;
 
 /// One generator with its residuals at the base and their slopes.
 pub(super) struct Watch {
@@ -141,17 +139,14 @@ impl Watch {
         values
     }
 
-    /// Mean square of `values` in each group without the samples that leave most.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
-    pub(super) fn steady(&self, values: &[f64]) -> Vec<f64> {
-        let steady = |(index, group): (usize, &Group)| {
-            let own = values.iter().zip(&self.stack.group).filter(|(_, group)| **group == index);
-            let mut squares: Vec<f64> = own.map(|(value, _)| value * value).collect();
-            squares.sort_by(f64::total_cmp);
-            let kept = (squares.len() as f64 * (1.0 - BUMPS)).ceil() as usize;
-            squares[..kept].iter().sum::<f64>() / ((1.0 - BUMPS) * group.samples).max(1.0)
+    /// What `values` leave of each group that the mean square does not tell.
+    pub(super) fn bumps(&self, values: &[f64]) -> Vec<Bumps> {
+        let Stack { ref group, ref at_s, ref groups, .. } = self.stack;
+        let of = |(index, one): (usize, &Group)| {
+            let own = (0..values.len()).filter(|&i| group[i] == index);
+            Bumps::of(&own.map(|i| (at_s[i], values[i])).collect::<Vec<_>>(), one)
         };
-        self.stack.groups.iter().enumerate().map(steady).collect()
+        groups.iter().enumerate().map(of).collect()
     }
 
     /// How much of what each group leaves is what is explained there, moved in time: `values` are residuals

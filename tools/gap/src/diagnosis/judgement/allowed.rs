@@ -16,6 +16,10 @@ const COURSE: [f64; 2] = [1.3, LAW];
 /// Signals with fewer independent samples say nothing of what is left.
 const SAMPLES_MIN: f64 = 8.0;
 
+/// How large a bump may be at its peak that comes a third time, in floors of the signal: wheels that lift jolt
+/// a machine again and again. Right answers leave up to 3.2 of what has many samples, 4.0 of the weight.
+const RECURRING: f64 = 4.0;
+
 /// An echo that chance makes on a signal, nats: the seven taps of the filter, and what correlates.
 const ECHO: f64 = 8.0;
 /// The share of a gap that an echo may have on what a joint does within a second: models of one joint
@@ -69,17 +73,33 @@ pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64
     if after.samples < SAMPLES_MIN {
         return 0.0;
     }
-    let [floor, law] = match after.signal {
-        Signal::Roll => ROLL,
-        Signal::TravelCourse => COURSE,
-        _ => [1.0, LAW],
-    };
-    let share = vagueness(names, after.generator, after.signal).max(law);
+    let [floor, share] = floor_and_share(names, after);
     // A wheel that lifts jolts arms and attitude; nothing jolts the pressure that a law asks for, and
     // what is late shows there for moments alone.
     let jolts = after.signal != Signal::DrivePressure;
     let left = if jolts { after.steady } else { after.square };
     left.sqrt() / (floor + share * before.square.max(explained).sqrt())
+}
+
+/// How large the bump of `after` that comes a third time is beside the largest that a right answer, which is
+/// one of `names` or both, leaves where `before` was there.
+pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2]) -> f64 {
+    if after.samples < SAMPLES_MIN {
+        return 0.0;
+    }
+    let [floor, share] = floor_and_share(names, after);
+    after.recurring / (RECURRING * floor + share * before.recurring)
+}
+
+/// What a right answer, which is one of `names` or both, may leave of the signal of `left`: floors, and a
+/// share of the gap.
+fn floor_and_share(names: &[&str], left: &Left) -> [f64; 2] {
+    let [floor, law] = match left.signal {
+        Signal::Roll => ROLL,
+        Signal::TravelCourse => COURSE,
+        _ => [1.0, LAW],
+    };
+    [floor, vagueness(names, left.generator, left.signal).max(law)]
 }
 
 /// How loud `echo` is beside the loudest that a right answer, which is one of `names` or both, has there.
@@ -116,7 +136,7 @@ mod tests {
 
     fn left(generator: Generator, signal: Signal, floors: f64, steady: f64) -> Left {
         let [square, steady] = [floors, steady].map(|floors| floors * floors);
-        Left { generator, signal, square, steady, samples: 100.0 }
+        Left { steady, ..Left::evenly(generator, signal, square, 100.0) }
     }
 
     #[test]
@@ -148,6 +168,21 @@ mod tests {
         };
         assert!(of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke) < 0.5);
         assert!(of(Generator::Drive, Signal::DrivePressure) > 2.0);
+    }
+
+    #[test]
+    fn a_bump_that_comes_again_and_again_is_no_jolt() {
+        let of = |name: &str, was, is| {
+            let at = |recurring| {
+                let evenly = left(Generator::ArmStroke(Wheel::Ml), Signal::Stroke, 20.0, 0.5);
+                Left { recurring, ..evenly }
+            };
+            recurring(&[name], [&at(was), &at(is)])
+        };
+        assert!(of("valve-lag", 3.0, 3.0) < 1.0);
+        assert!(of("valve-lag", 70.0, 28.0) > 2.0);
+        assert!(of("valve-lag", 2800.0, 28.0) < 1.0);
+        assert!(of("seal-stiction", 70.0, 28.0) < 1.0);
     }
 
     #[test]

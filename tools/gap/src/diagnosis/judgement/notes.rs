@@ -91,8 +91,7 @@ mod tests {
     #[test]
     fn a_machine_that_stands_askew_may_have_its_wheels_in_another_order() {
         let of = |signal, floors: f64| {
-            let (generator, square, samples) = (Generator::Stance, floors * floors, 30.0);
-            let alone = vec![Left { generator, signal, square, steady: square, samples }];
+            let alone = vec![Left::evenly(Generator::Stance, signal, floors * floors, 30.0)];
             Findings { alone, ..Findings::default() }.another_order().is_some()
         };
         assert!(of(Signal::Roll, 18.0));

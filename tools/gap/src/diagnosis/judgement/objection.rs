@@ -6,7 +6,7 @@ use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 use super::super::knob::Knob;
-use super::allowed::{echoing, excess};
+use super::allowed::{echoing, excess, recurring};
 use super::{Findings, Held};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
@@ -40,7 +40,8 @@ pub(super) struct Objection {
 impl Findings {
     /// The strongest objection to the best cause or pair; about one, or less, where it is right.
     pub(super) fn objection(&self) -> Objection {
-        let of_signals = self.signals_left().chain(self.held_left()).chain(self.echoing());
+        let of_runs = self.signals_left().chain(self.recurring());
+        let of_signals = of_runs.chain(self.held_left()).chain(self.echoing());
         let all = of_signals.chain(furthest(&self.shifts)).chain([self.bending()]);
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
@@ -62,7 +63,23 @@ impl Findings {
         })
     }
 
-    /// The same of the runs held out, of gaps that only they show: how well a cause foretells what it
+    /// Bumps that are no accident: they are hidden in no mean.
+    fn recurring(&self) -> impl Iterator<Item = Objection> {
+        let names = self.names();
+        self.unbent.iter().zip(&self.after).map(move |(before, after)| Objection {
+            times: recurring(&names, [before, after]),
+            why: format!(
+                "{:.0} floors are left of the {} of {} again and again",
+                after.recurring,
+                after.signal.with_wheel(),
+                after.generator
+            ),
+            at: Some((after.generator, after.signal)),
+            is_held: false,
+        })
+    }
+
+    /// What is left of the runs held out, of gaps that only they show: how well a cause foretells what it
     /// explains is in its evidence already.
     pub(super) fn held_left(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
@@ -165,9 +182,8 @@ mod tests {
     #[test]
     fn what_runs_held_out_leave_speaks_where_it_is_well_beyond_a_floor() {
         let of = |floors: f64| {
-            let generator = Generator::Joint(0);
-            let (signal, square, samples) = (Signal::JointAngle, floors * floors, 100.0);
-            let left = vec![Left { generator, signal, square, steady: square, samples }];
+            let square = floors * floors;
+            let left = vec![Left::evenly(Generator::Joint(0), Signal::JointAngle, square, 100.0)];
             let held = Held { unbent: left.clone(), after: left, ..Held::default() };
             Findings { held, ..Findings::default() }.objection()
         };
@@ -177,12 +193,23 @@ mod tests {
     }
 
     #[test]
+    fn what_comes_again_and_again_speaks_where_the_mean_is_silent() {
+        let evenly = Left::evenly(Generator::ArmStroke(Wheel::Ml), Signal::Stroke, 0.2, 100.0);
+        let left = vec![Left { recurring: 28.0, ..evenly }];
+        let findings = Findings { unbent: left.clone(), after: left, ..Findings::default() };
+        let objection = findings.objection();
+        assert!(
+            objection.times > 2.0 && objection.why.contains("again and again"),
+            "{objection:?}"
+        );
+    }
+
+    #[test]
     fn what_is_explained_of_runs_held_out_in_part_is_for_the_evidence_to_weigh() {
         let of = |after: f64| {
-            let generator = Generator::Drive;
             let left = |floors: f64| {
-                let (signal, square) = (Signal::DrivePressure, floors * floors);
-                vec![Left { generator, signal, square, steady: square, samples: 100.0 }]
+                let square = floors * floors;
+                vec![Left::evenly(Generator::Drive, Signal::DrivePressure, square, 100.0)]
             };
             let held = Held { unbent: left(20.0), after: left(after), ..Held::default() };
             Findings { held, ..Findings::default() }.objection().times

@@ -146,13 +146,7 @@ mod tests {
     use crate::diagnosis::Generator;
 
     fn left(wheel: Wheel, square: f64) -> Left {
-        Left {
-            generator: Generator::ArmStroke(wheel),
-            signal: Signal::Stroke,
-            square,
-            steady: square,
-            samples: 100.0,
-        }
+        Left::evenly(Generator::ArmStroke(wheel), Signal::Stroke, square, 100.0)
     }
 
     #[test]
@@ -198,12 +192,8 @@ mod tests {
 
     #[test]
     fn a_gap_of_sixty_floors_comes_before_one_of_two_that_has_more_samples() {
-        let of = |generator, signal, floors: f64, samples| Left {
-            generator,
-            signal,
-            square: floors * floors,
-            steady: floors * floors,
-            samples,
+        let of = |generator, signal, floors: f64, samples| {
+            Left::evenly(generator, signal, floors * floors, samples)
         };
         let arm = |floors| of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, floors, 150.0);
         let weight = |floors| of(Generator::Stance, Signal::Weight, floors, 17.0);
@@ -213,20 +203,8 @@ mod tests {
 
     #[test]
     fn what_a_cause_explains_comes_before_a_gap_that_stays() {
-        let roll = |square| Left {
-            generator: Generator::Stance,
-            signal: Signal::Roll,
-            square,
-            steady: square,
-            samples: 30.0,
-        };
-        let joint = |square| Left {
-            generator: Generator::Joint(0),
-            signal: Signal::JointAngle,
-            square,
-            steady: square,
-            samples: 100.0,
-        };
+        let roll = |square| Left::evenly(Generator::Stance, Signal::Roll, square, 30.0);
+        let joint = |square| Left::evenly(Generator::Joint(0), Signal::JointAngle, square, 100.0);
         let places = places(&[roll(1.4), joint(1.2)], &[roll(1.4), joint(0.2)]);
         assert_eq!(places[0].spot.block, Block::Steering);
     }

@@ -2,11 +2,13 @@
 
 mod bodies;
 mod ground_contact;
+mod hinge;
 mod hull_watch;
 mod insert;
 mod roll_hinge;
 mod rolling;
 mod shapes;
+mod spin;
 mod tyre_contact;
 
 pub use bodies::RapierBodies;

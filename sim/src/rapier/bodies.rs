@@ -1,4 +1,5 @@
-//! The vehicle as rigid bodies: three frames, six arms and six wheels in one multibody of 20 freedoms.
+//! The vehicle as rigid bodies: three frames and six arms with their wheels in one multibody of 14
+//! freedoms, beside it the turning of each wheel.
 //!
 //! Reduced coordinates (multibody joints) because the soft locks carry the whole weight: impulse
 //! joints give way where a lock should hold. Stiff springs are integrated implicitly by the engine.
@@ -6,25 +7,27 @@
 use rapier3d::prelude::*;
 use xt28_machine::{PerWheel, Wheel};
 
+use super::hinge::{HINGE, Hinge, set_spring, signed};
 use super::hull_watch::HullWatch;
-use super::insert::{insert_arm, insert_frames, new_world, origin_m, vector};
+use super::insert::{hub, insert_arm, insert_frames, new_world, origin_m, vector};
 use super::roll_hinge::roll_spring;
 use super::shapes::Ground;
+use super::spin::Spin;
 use super::tyre_contact::{Rim, Tread, TyreContact};
-use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
+use crate::bodies::{Bodies, HingeMotion, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
 /// Longest step of the engine, s; longer ones are made of several (tyres were 8 cm off at 120 Hz).
 const LONGEST_S: f64 = 0.005;
-/// Index of a hinge's own angle among a joint's six coordinates.
-const HINGE: usize = 3;
 
 /// The engine's world with handles to every part of the vehicle.
 pub struct RapierBodies {
     world: PhysicsWorld,
     frames: [RigidBodyHandle; 3],
     arms: PerWheel<RigidBodyHandle>,
-    wheels: PerWheel<RigidBodyHandle>,
+    /// Each wheel's centre from its arm's pivot and from the arm's centre of mass, among the arm's axes.
+    hubs: PerWheel<[Vector; 2]>,
+    spins: PerWheel<Spin>,
     hulls: [HullWatch; 3],
     terrain: Terrain,
     /// The front frame's centre of mass, which is its body's origin, among the machine's axes.
@@ -34,18 +37,10 @@ pub struct RapierBodies {
     joints: [Hinge; 2],
     roll: Option<(Hinge, RollHinge)>,
     arm_hinges: PerWheel<Hinge>,
-    wheel_hinges: PerWheel<Hinge>,
     /// Sense in which each arm extends about +y.
     extends: PerWheel<f64>,
     ground_force_n: PerWheel<f64>,
     chassis_force_n: f64,
-}
-
-/// Where a hinge's angle is among the multibody's links and velocities.
-#[derive(Clone, Copy, Debug, Default)]
-struct Hinge {
-    link: usize,
-    dof: usize,
 }
 
 impl Bodies for RapierBodies {
@@ -62,17 +57,14 @@ impl Bodies for RapierBodies {
                 )),
         );
         let (frames, turned) = insert_frames(parts, &mut world);
-        let mut arms = PerWheel::splat(RigidBodyHandle::invalid());
-        let mut wheels = arms;
-        for wheel in Wheel::ALL {
-            (arms[wheel], wheels[wheel]) = insert_arm(parts, &mut world, &frames, wheel);
-        }
+        let arms = PerWheel::from_fn(|wheel| insert_arm(parts, &mut world, &frames, wheel));
         let hulls = core::array::from_fn(|i| HullWatch::new(&mut world, frames[i], parts, i));
         let mut bodies = Self {
             world,
             frames,
             arms,
-            wheels,
+            hubs: PerWheel::from_fn(|wheel| hub(parts, wheel)),
+            spins: PerWheel::splat(Spin::new(parts.wheel.inertia_kg_m2[1])),
             hulls,
             terrain: terrain.clone(),
             front_com: vector(origin_m(parts, 0)),
@@ -81,7 +73,6 @@ impl Bodies for RapierBodies {
             joints: Default::default(),
             roll: None,
             arm_hinges: PerWheel::splat(Hinge::default()),
-            wheel_hinges: PerWheel::splat(Hinge::default()),
             extends: PerWheel::from_fn(|wheel| parts.arms[wheel].extends),
             ground_force_n: PerWheel::splat(0.0),
             chassis_force_n: 0.0,
@@ -103,7 +94,9 @@ impl Bodies for RapierBodies {
             // The engine counts the turn of the frame behind, which goes right when the machine
             // bends left.
             joint: self.joints.map(|hinge| signed(self.hinge_motion(hinge), -1.0)),
-            wheel_rate_rad_s: self.wheel_hinges.map(|hinge| self.hinge_motion(hinge).rate_rad_s),
+            wheel_rate_rad_s: PerWheel::from_fn(|w| {
+                self.spins[w].against(f64::from(self.arm_rate(w).dot(self.axle(w))))
+            }),
             position_m: wide(*body.position() * -self.front_com),
             axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
             velocity_m_s: wide(velocity),
@@ -146,10 +139,6 @@ impl Placed for RapierBodies {
         }
         for wheel in Wheel::ALL {
             hinge(self.arm_hinges[wheel], motion.arm[wheel], self.extends[wheel]);
-            // How far a wheel has turned changes nothing.
-            let rate_rad_s = motion.wheel_rate_rad_s[wheel];
-            let angle_rad = self.hinge_motion(self.wheel_hinges[wheel]).angle_rad;
-            hinge(self.wheel_hinges[wheel], HingeMotion { angle_rad, rate_rad_s }, 1.0);
         }
         for link in self.multibody().links().skip(1) {
             move_by[link.assembly_id()] -= link.joint().coords()[HINGE];
@@ -162,6 +151,10 @@ impl Placed for RapierBodies {
         multibody.generalized_velocity_mut().copy_from_slice(&velocity);
         multibody.forward_kinematics(bodies, true);
         multibody.update_rigid_bodies(bodies, true);
+        for wheel in Wheel::ALL {
+            let arm_rad_s = f64::from(self.arm_rate(wheel).dot(self.axle(wheel)));
+            self.spins[wheel].set_against(motion.wheel_rate_rad_s[wheel], arm_rad_s);
+        }
     }
 }
 
@@ -195,11 +188,10 @@ impl RapierBodies {
     #[allow(clippy::cast_possible_truncation)]
     fn sub_step(&mut self, loads: &Loads, dt_s: f64) {
         self.set_springs(loads);
-        self.set_drive(loads);
         for hull in &mut self.hulls {
             hull.look(&mut self.world, &self.terrain, dt_s);
         }
-        self.push_tyres(loads, dt_s);
+        self.push_wheels(loads, dt_s);
         self.world.integration_parameters.dt = dt_s as Real;
         self.world.step();
         let push_n = |hull: &HullWatch| {
@@ -220,32 +212,19 @@ impl RapierBodies {
             let spring = roll_spring(&law, self.hinge_motion(hinge).angle_rad);
             set_spring(self.multibody_mut(), hinge, &spring, 1.0);
         }
-        let (joints, arms, wheels) = (self.joints, self.arm_hinges, self.wheel_hinges);
-        let extends = self.extends;
+        let (joints, arms, extends) = (self.joints, self.arm_hinges, self.extends);
         let multibody = self.multibody_mut();
         for (hinge, spring) in joints.iter().zip(&loads.joint) {
             set_spring(multibody, *hinge, spring, -1.0);
         }
         for wheel in Wheel::ALL {
             set_spring(multibody, arms[wheel], &loads.arm[wheel], extends[wheel]);
-            #[allow(clippy::cast_possible_truncation)]
-            let hold_nm = loads.hold_nm[wheel] as Real;
-            multibody.frictions_mut()[wheels[wheel].dof] = hold_nm;
         }
     }
 
-    fn set_drive(&mut self, loads: &Loads) {
-        for wheel in Wheel::ALL {
-            let axle = self.axle(wheel);
-            #[allow(clippy::cast_possible_truncation)]
-            let drive = loads.drive_nm[wheel] as Real;
-            let arm = &mut self.world.bodies[self.arms[wheel]];
-            arm.reset_torques(false);
-            arm.add_torque(axle * -drive, false);
-            let body = &mut self.world.bodies[self.wheels[wheel]];
-            body.reset_torques(false);
-            body.add_torque(axle * drive, false);
-        }
+    /// Angular velocity of an arm, rad/s, in the world.
+    fn arm_rate(&self, wheel: Wheel) -> Vector {
+        self.velocities(self.arm_hinges[wheel].link)[1]
     }
 
     /// The axle of a wheel, to the left.
@@ -253,24 +232,42 @@ impl RapierBodies {
         self.world.bodies[self.arms[wheel]].rotation() * Vector::Y
     }
 
-    /// Hands the tyres' forces and the rolling resistance to their wheels.
-    fn push_tyres(&mut self, loads: &Loads, dt_s: f64) {
+    /// Steps the tyres and turns the wheels; hands the arms what they have to bear of it.
+    #[allow(clippy::cast_possible_truncation)]
+    fn push_wheels(&mut self, loads: &Loads, dt_s: f64) {
         for wheel in Wheel::ALL {
+            let axle = self.axle(wheel);
+            let pose = *self.world.bodies[self.arms[wheel]].position();
+            let lever = pose.rotation * self.hubs[wheel][1];
+            let [com_velocity, arm_rate] = self.velocities(self.arm_hinges[wheel].link);
+            let arm_rad_s = f64::from(arm_rate.dot(axle));
+            let rate_rad_s = self.spins[wheel].against(arm_rad_s);
             let rim = Rim {
-                centre: self.world.bodies[self.wheels[wheel]].translation(),
-                axle: self.axle(wheel),
-                velocities: self.velocities(self.wheel_hinges[wheel].link),
-                rate_rad_s: self.hinge_motion(self.wheel_hinges[wheel]).rate_rad_s,
+                centre: pose * self.hubs[wheel][0],
+                axle,
+                velocities: [
+                    com_velocity + arm_rate.cross(lever),
+                    arm_rate + axle * rate_rad_s as Real,
+                ],
+                rate_rad_s,
                 drive_nm: loads.drive_nm[wheel],
             };
-            let [force, torque] =
+            let [on_tread, torque] =
                 self.tyres[wheel].push(&rim, &self.terrain, &loads.drag[wheel], dt_s);
-            let body = &mut self.world.bodies[self.wheels[wheel]];
+            self.ground_force_n[wheel] = f64::from(on_tread.z);
             let outside = &loads.on_wheel[wheel];
-            body.reset_forces(false);
-            body.add_force(force + vector(outside.force_n), false);
-            body.add_torque(torque + vector(outside.torque_nm), false);
-            self.ground_force_n[wheel] = f64::from(force.z);
+            let force = on_tread + vector(outside.force_n);
+            let torque = torque + vector(outside.torque_nm);
+            let gyroscopic = self.spins[wheel].gyroscopic_nm(axle, arm_rate);
+            let turning = torque.dot(axle);
+            let turning_nm = f64::from(turning) + loads.drive_nm[wheel];
+            let held_nm = self.spins[wheel].step(turning_nm, loads.hold_nm[wheel], arm_rad_s, dt_s);
+            let from_axle = turning + (loads.drive_nm[wheel] + held_nm) as Real;
+            let arm = &mut self.world.bodies[self.arms[wheel]];
+            arm.reset_forces(false);
+            arm.reset_torques(false);
+            arm.add_force(force, false);
+            arm.add_torque(lever.cross(force) + torque - axle * from_axle - gyroscopic, false);
         }
     }
 
@@ -305,9 +302,13 @@ impl RapierBodies {
     /// The engine brings its bodies' own velocities up to date only when the next step begins.
     fn velocities(&self, link: usize) -> [Vector; 2] {
         let multibody = self.multibody();
-        let twist = multibody.body_jacobian(link) * multibody.generalized_velocity();
-        let at = |i: usize| Vector::new(twist[i], twist[i + 1], twist[i + 2]);
-        [at(0), at(3)]
+        let freedoms = multibody.body_jacobian(link).column_iter();
+        let mut twist = [Vector::ZERO; 2];
+        for (column, rate) in freedoms.zip(multibody.generalized_velocity().iter()) {
+            let at = |i: usize| Vector::new(column[i], column[i + 1], column[i + 2]);
+            twist = [twist[0] + at(0) * *rate, twist[1] + at(3) * *rate];
+        }
+        twist
     }
 
     fn multibody(&self) -> &Multibody {
@@ -332,9 +333,7 @@ impl RapierBodies {
         };
         let joints = turned.map(find);
         let roll = roll.map(|law| (find(self.frames[1]), law));
-        let (arms, wheels) = (self.arms.map(find), self.wheels.map(find));
-        (self.joints, self.arm_hinges, self.wheel_hinges) = (joints, arms, wheels);
-        self.roll = roll;
+        (self.joints, self.arm_hinges, self.roll) = (joints, self.arms.map(find), roll);
     }
 
     /// Takes the root's freedoms from its body; clears the engine's default joint damping.
@@ -375,17 +374,4 @@ impl RapierBodies {
 fn multibody_of(joints: &mut MultibodyJointSet, part: RigidBodyHandle) -> &mut Multibody {
     let index = joints.rigid_body_link(part).map(|link| link.multibody);
     index.and_then(|index| joints.get_multibody_mut(index)).expect("the vehicle is one multibody")
-}
-
-fn signed(motion: HingeMotion, sign: f64) -> HingeMotion {
-    HingeMotion { angle_rad: sign * motion.angle_rad, rate_rad_s: sign * motion.rate_rad_s }
-}
-
-#[allow(clippy::cast_possible_truncation)]
-fn set_spring(multibody: &mut Multibody, hinge: Hinge, spring: &HingeSpring, sign: f64) {
-    multibody.damping_mut()[hinge.dof] = spring.damping_nms as Real;
-    if let Some(link) = multibody.link_mut(hinge.link) {
-        let rest_rad = sign * spring.rest_rad;
-        link.joint.set_spring(HINGE, spring.stiffness_nm as Real, rest_rad as Real);
-    }
 }

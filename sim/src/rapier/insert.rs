@@ -101,22 +101,35 @@ pub(super) fn insert_hull(
     world.insert_collider(hull, Some(frame))
 }
 
-/// An arm with its wheel: the arm's origin is its pivot, the wheel's its centre.
+/// An arm with its wheel on it, whose own turning is kept elsewhere; its origin is its pivot.
 pub(super) fn insert_arm(
     parts: &Parts,
     world: &mut PhysicsWorld,
     frames: &[RigidBodyHandle; 3],
     wheel: Wheel,
-) -> (RigidBodyHandle, RigidBodyHandle) {
-    let ArmPart { body: arm, pivot_m, to_wheel_m, .. } = &parts.arms[wheel];
-    // Arms and wheels have their origin in their own hinge.
-    let axle = |on_parent: Vector| RevoluteJointBuilder::new(Vector::Y).local_anchor1(on_parent);
+) -> RigidBodyHandle {
     let frame = wheel.axle() as usize;
-    let arm = world.bodies.insert(body(arm));
-    world.insert_multibody_joint(frames[frame], arm, axle(on_frame(parts, frame, *pivot_m)));
-    let rim = world.bodies.insert(body(&parts.wheel));
-    world.insert_multibody_joint(arm, rim, axle(vector(*to_wheel_m)));
-    (arm, rim)
+    let pivot = on_frame(parts, frame, parts.arms[wheel].pivot_m);
+    let arm = world.bodies.insert(body(&with_wheel(parts, wheel)));
+    let hinge = RevoluteJointBuilder::new(Vector::Y).local_anchor1(pivot);
+    world.insert_multibody_joint(frames[frame], arm, hinge);
+    arm
+}
+
+/// An arm and its wheel as one body, but for the wheel's inertia about its own axle.
+fn with_wheel(parts: &Parts, wheel: Wheel) -> Part {
+    let ArmPart { body: arm, to_wheel_m, .. } = parts.arms[wheel];
+    let mut rim = parts.wheel;
+    rim.com_m = core::array::from_fn(|i| to_wheel_m[i] + rim.com_m[i]);
+    rim.inertia_kg_m2[1] = 0.0;
+    arm.joined(rim)
+}
+
+/// A wheel's centre from its arm's pivot and from the centre of mass of both, among the arm's axes.
+pub(super) fn hub(parts: &Parts, wheel: Wheel) -> [Vector; 2] {
+    let to_wheel_m = parts.arms[wheel].to_wheel_m;
+    let com_m = with_wheel(parts, wheel).com_m;
+    [to_wheel_m, core::array::from_fn(|i| to_wheel_m[i] - com_m[i])].map(vector)
 }
 
 #[allow(clippy::cast_possible_truncation)]

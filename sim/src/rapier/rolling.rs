@@ -13,8 +13,11 @@
 
 use crate::RollingDrag;
 
-/// Passes of Newton's method: they leave a millionth of the largest torque at most.
+/// Most passes of Newton's method: they leave a millionth of the largest torque at most.
 const PASSES: usize = 6;
+/// A pass that moves the rate by less is the last, in units of the fade: on a wheel that rolls the
+/// second is.
+const SETTLED: f64 = 1e-9;
 
 /// A wheel's rolling and what it remembers of the step before.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +65,11 @@ fn slowed_by_nm(drag: &RollingDrag, free_rad_s: f64, per_nm: f64) -> f64 {
     let mut rate = 0.0_f64;
     for _ in 0..PASSES {
         let share = rate.tanh();
-        rate += (free - rate - steep * share) / (1.0 + steep * (1.0 - share * share));
+        let by = (free - rate - steep * share) / (1.0 + steep * (1.0 - share * share));
+        rate += by;
+        if by.abs() < SETTLED {
+            break;
+        }
     }
     -(drag.most_nm * rate.tanh()).copysign(free_rad_s)
 }

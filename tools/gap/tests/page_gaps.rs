@@ -11,16 +11,7 @@ use xt28_sim::effects::Block;
 
 #[test]
 fn the_place_that_the_verdict_is_about_has_the_first_curve_over_the_horizon() {
-    let joint = Place {
-        spot: Spot {
-            block: Block::Steering,
-            part: "joint",
-            scope: "all".parse().unwrap(),
-            residual: "front joint angle".to_owned(),
-        },
-        gap_over_noise: 0.9,
-        share: 0.1,
-    };
+    let joint = joint_place();
     let names = |places| {
         let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
         details.horizons.into_iter().map(|curve| curve.name).collect::<Vec<_>>()
@@ -33,6 +24,31 @@ fn the_place_that_the_verdict_is_about_has_the_first_curve_over_the_horizon() {
         names.iter().filter(|name| *name != "joint front").cloned().collect()
     };
     assert_eq!(others(&first), others(&by_error), "the rest by how far their errors move");
+}
+
+#[test]
+fn a_second_place_without_a_gap_comes_before_none_that_has_one() {
+    let curves = |places| {
+        let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
+        details.horizons.into_iter().map(|curve| curve.name).collect::<Vec<_>>()
+    };
+    let first = || diagnosis(Verdict::Effect).places.swap_remove(0);
+    let quiet = curves(vec![first(), joint_place()]);
+    assert_eq!(quiet, curves(vec![first()]));
+    let loud = curves(vec![first(), Place { gap_over_noise: 3.0, ..joint_place() }]);
+    let rank = |names: &[String]| names.iter().position(|name| name == "joint front").unwrap();
+    assert!(rank(&loud) < rank(&quiet), "{loud:?}, {quiet:?}");
+}
+
+/// A place at the front joint whose gap is below a floor.
+fn joint_place() -> Place {
+    let spot = Spot {
+        block: Block::Steering,
+        part: "joint",
+        scope: "all".parse().unwrap(),
+        residual: "front joint angle".to_owned(),
+    };
+    Place { spot, gap_over_noise: 0.9, share: 0.1 }
 }
 
 #[test]

@@ -12,6 +12,8 @@ const PIECE: usize = 50;
 /// Places of the verdict that have a curve before all others. An error in floors that every machine has
 /// may be larger than the one that is named: then the block that the verdict is about had none.
 const PLACES: usize = 2;
+/// A second place whose gap is smaller is no part of what the verdict is about, floors.
+const GAP_MIN: f64 = 1.0;
 
 /// One generator's error over the horizon.
 ///
@@ -35,7 +37,9 @@ pub(super) fn curves(pairs: &[Pair], diagnosis: &Diagnosis) -> Vec<Curve> {
     curves.sort_by(|(_, a), (_, b)| last(b).total_cmp(&last(a)));
     let open = diagnosis.unexplained.iter();
     let mut first = 0;
-    for spot in open.chain(diagnosis.places.iter().map(|place| &place.spot)) {
+    let places = diagnosis.places.iter().enumerate();
+    let loud = places.filter(|(rank, place)| *rank == 0 || place.gap_over_noise >= GAP_MIN);
+    for spot in open.chain(loud.map(|(_, place)| &place.spot)) {
         let of_spot = |(generator, _): &(Generator, Curve)| watches(pairs, *generator, spot);
         // One that is among the first already has this place shown.
         if first < PLACES

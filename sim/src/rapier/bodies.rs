@@ -94,9 +94,7 @@ impl Bodies for RapierBodies {
             // The engine counts the turn of the frame behind, which goes right when the machine
             // bends left.
             joint: self.joints.map(|hinge| signed(self.hinge_motion(hinge), -1.0)),
-            wheel_rate_rad_s: PerWheel::from_fn(|w| {
-                self.spins[w].against(f64::from(self.arm_rate(w).dot(self.axle(w))))
-            }),
+            wheel_rate_rad_s: PerWheel::from_fn(|w| self.spins[w].against(self.arm_rad_s(w))),
             position_m: wide(*body.position() * -self.front_com),
             axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
             velocity_m_s: wide(velocity),
@@ -152,7 +150,7 @@ impl Placed for RapierBodies {
         multibody.forward_kinematics(bodies, true);
         multibody.update_rigid_bodies(bodies, true);
         for wheel in Wheel::ALL {
-            let arm_rad_s = f64::from(self.arm_rate(wheel).dot(self.axle(wheel)));
+            let arm_rad_s = self.arm_rad_s(wheel);
             self.spins[wheel].set_against(motion.wheel_rate_rad_s[wheel], arm_rad_s);
         }
     }
@@ -222,9 +220,10 @@ impl RapierBodies {
         }
     }
 
-    /// Angular velocity of an arm, rad/s, in the world.
-    fn arm_rate(&self, wheel: Wheel) -> Vector {
-        self.velocities(self.arm_hinges[wheel].link)[1]
+    /// How fast an arm turns about its wheel's axle, against the world, rad/s.
+    fn arm_rad_s(&self, wheel: Wheel) -> f64 {
+        let [_, rate] = self.velocities(self.arm_hinges[wheel].link);
+        f64::from(rate.dot(self.axle(wheel)))
     }
 
     /// The axle of a wheel, to the left.

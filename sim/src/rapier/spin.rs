@@ -56,11 +56,10 @@ mod tests {
     #[test]
     fn a_brake_holds_a_wheel_to_its_arm_up_to_its_torque() {
         let mut spin = Spin::new(100.0);
-        for (turning_nm, held_nm) in [(400.0, -400.0), (900.0, -500.0), (0.0, -20.0)] {
-            spin.set_against(0.0, 0.0);
-            if held_nm == -20.0 {
-                spin.set_against(0.001, 0.0);
-            }
+        for (rate_rad_s, turning_nm, held_nm) in
+            [(0.0, 400.0, -400.0), (0.0, 900.0, -500.0), (0.001, 0.0, -20.0)]
+        {
+            spin.set_against(rate_rad_s, 0.0);
             let held = spin.step(turning_nm, 500.0, 0.0, 0.005);
             assert!((held - held_nm).abs() < 1e-9, "{held}");
         }

@@ -12,13 +12,9 @@ use xt28_sim::effects::Block;
 #[test]
 fn the_place_that_the_verdict_is_about_has_the_first_curve_over_the_horizon() {
     let joint = joint_place();
-    let names = |places| {
-        let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
-        details.horizons.into_iter().map(|curve| curve.name).collect::<Vec<_>>()
-    };
-    let by_error = names(Vec::new());
+    let by_error = curves(Vec::new());
     assert_ne!(by_error[0], "joint front", "another block's error is larger here");
-    let first = names(vec![joint]);
+    let first = curves(vec![joint]);
     assert_eq!(first[0], "joint front");
     let others = |names: &[String]| -> Vec<String> {
         names.iter().filter(|name| *name != "joint front").cloned().collect()
@@ -28,16 +24,18 @@ fn the_place_that_the_verdict_is_about_has_the_first_curve_over_the_horizon() {
 
 #[test]
 fn a_second_place_without_a_gap_comes_before_none_that_has_one() {
-    let curves = |places| {
-        let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
-        details.horizons.into_iter().map(|curve| curve.name).collect::<Vec<_>>()
-    };
     let first = || diagnosis(Verdict::Effect).places.swap_remove(0);
     let quiet = curves(vec![first(), joint_place()]);
     assert_eq!(quiet, curves(vec![first()]));
     let loud = curves(vec![first(), Place { gap_over_noise: 3.0, ..joint_place() }]);
     let rank = |names: &[String]| names.iter().position(|name| name == "joint front").unwrap();
     assert!(rank(&loud) < rank(&quiet), "{loud:?}, {quiet:?}");
+}
+
+/// Names of the curves over the horizon, in their order, of a verdict with these places.
+fn curves(places: Vec<Place>) -> Vec<String> {
+    let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
+    details.horizons.into_iter().map(|curve| curve.name).collect()
 }
 
 /// A place at the front joint whose gap is below a floor.

@@ -40,10 +40,38 @@ impl From<Tally> for Report {
 /// What a test says, past the harness that keeps the words of those that pass, when it cannot do its work here.
 const SKIPPED: &str = "SKIPPED: ";
 
+/// Reads a harness's output line by line.
+#[derive(Default)]
+pub(crate) struct Reader {
+    report: Report,
+    skipped: u32,
+}
+
+impl Reader {
+    /// Takes one line of it.
+    pub(crate) fn line(&mut self, line: &str) {
+        self.report.tally += Tally::of_line(line).unwrap_or_default();
+        self.skipped += u32::from(line.contains(SKIPPED));
+        self.report.failures.extend(failed_test(line).map(str::to_owned));
+    }
+
+    /// What came of it all, its program having ended well or not.
+    pub(crate) fn end(self, success: bool) -> Report {
+        let Self { mut report, skipped } = self;
+        // Such a test returns like one that has passed.
+        report.tally.passed = report.tally.passed.saturating_sub(skipped);
+        report.tally.skipped += skipped;
+        // It did not compile, or a test brought its whole program down.
+        if !success && report.tally.failed == 0 {
+            report.tally.failed = 1;
+        }
+        report
+    }
+}
+
 /// Runs a command whose tests tell their results, passing its output on as it comes.
 pub(crate) fn harness(command: &mut Command) -> Report {
-    let mut report = Report::default();
-    let mut skipped = 0;
+    let mut reader = Reader::default();
     let mut read_and_wait = || -> Outcome<bool> {
         let mut child = command.stdout(Stdio::piped()).spawn()?;
         let output = child.stdout.take().ok_or("no output to read")?;
@@ -51,9 +79,7 @@ pub(crate) fn harness(command: &mut Command) -> Report {
             let line = line?;
             let line = String::from_utf8_lossy(&line);
             println!("{line}");
-            report.tally += Tally::of_line(&line).unwrap_or_default();
-            skipped += u32::from(line.contains(SKIPPED));
-            report.failures.extend(failed_test(&line).map(str::to_owned));
+            reader.line(&line);
         }
         Ok(child.wait()?.success())
     };
@@ -61,14 +87,7 @@ pub(crate) fn harness(command: &mut Command) -> Report {
         println!("{command:?}: {error}");
         false
     });
-    // Such a test returns like one that has passed.
-    report.tally.passed = report.tally.passed.saturating_sub(skipped);
-    report.tally.skipped += skipped;
-    // It did not compile, or a test brought its whole program down.
-    if !success && report.tally.failed == 0 {
-        report.tally.failed = 1;
-    }
-    report
+    reader.end(success)
 }
 
 /// The name in a harness's line `test NAME ... FAILED`.

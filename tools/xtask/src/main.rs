@@ -7,6 +7,7 @@ mod bench;
 mod guest;
 mod harness;
 mod second_engine;
+mod side_by_side;
 mod tally;
 mod test;
 mod tidy;

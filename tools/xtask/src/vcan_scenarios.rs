@@ -1,14 +1,17 @@
 //! `cargo xtask vcan-scenarios`: emulator, gateway and candump as programs on a real vcan0.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread;
 
 use cargo_metadata::{Artifact, Message};
 use clap::Args;
 
 use crate::guest::Guest;
-use crate::harness::{Report, harness, on_ci};
+use crate::harness::{Reader, Report, on_ci};
+use crate::side_by_side;
 use crate::tally::Tally;
 use crate::vcan::Cache;
 use crate::workspace::{Outcome, Workspace};
@@ -65,16 +68,17 @@ const fn exact(scenario: &'static str) -> Check {
 
 /// A test program that uses a real bus where `XT28_VCAN` names one.
 struct Test {
-    package: &'static str,
+    /// Its package's folder.
+    folder: &'static str,
     test: &'static str,
     virtual_time: bool,
 }
 
 const TESTS: &[Test] = &[
-    Test { package: "xt28-bus", test: "socket_can", virtual_time: false },
+    Test { folder: "dbc/bus", test: "socket_can", virtual_time: false },
     // A service tool gives up on an ECU that a loaded machine makes late.
-    Test { package: "ecu-emu", test: "service_tool", virtual_time: true },
-    Test { package: "ecu-emu", test: "wires", virtual_time: true },
+    Test { folder: "ecu-emu", test: "service_tool", virtual_time: true },
+    Test { folder: "ecu-emu", test: "wires", virtual_time: true },
 ];
 
 /// How many checks [`run_all`] has, each test program counted as one.
@@ -91,6 +95,9 @@ pub(crate) fn left_out(why: &str) -> Report {
 }
 
 /// Builds what is needed and runs every check.
+///
+/// Guests with clocks of their own run side by side, as nothing else that the machine does is felt
+/// in them. What runs on its clock has it to itself, after them, and so has what repeats one of them.
 pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Report {
     let out_of_reach = cache.folder(&workspace.target).ok().and_then(|c| Guest::out_of_reach(&c));
     if let Some(why) = out_of_reach.filter(|_| !on_ci()) {
@@ -104,26 +111,43 @@ pub(crate) fn run_all(workspace: &Workspace, cache: &Cache) -> Report {
         }
     };
     let mut report = Report::default();
-    for check in CHECKS {
-        let name = format!("vcan {}", check.log);
-        let outcome = bench.check(check);
-        report.tally += Tally::one(outcome.is_ok());
-        match outcome {
-            Ok(()) => println!("{name} ... ok"),
-            Err(why) => {
-                println!("{name} ... FAILED: {why}");
-                report.failures.push(name);
-            }
+    let checks = CHECKS.iter().map(Work::Check);
+    let tests = TESTS.iter().zip(&bench.tests).map(|(test, program)| Work::Test(test, program));
+    let (beside, alone): (Vec<_>, Vec<_>) = checks.chain(tests).partition(Work::bears_company);
+    bench.run(&beside, thread::available_parallelism().map_or(1, usize::from), &mut report);
+    bench.run(&alone, 1, &mut report);
+    report
+}
+
+/// What runs in a guest.
+enum Work<'a> {
+    Check(&'static Check),
+    /// And its program.
+    Test(&'static Test, &'a Path),
+}
+
+impl Work<'_> {
+    /// Whether it may run while others do.
+    fn bears_company(&self) -> bool {
+        let repeats = matches!(self, Self::Check(check) if check.repeats.is_some());
+        self.virtual_time() && !repeats
+    }
+
+    /// What its output is headed by.
+    fn name(&self) -> String {
+        let time = if self.virtual_time() { "in virtual time" } else { "in real time" };
+        match self {
+            Self::Check(check) => format!("{} on vcan0, {time}", check.scenario),
+            Self::Test(test, _) => format!("tests of {} on vcan0, {time}", test.test),
         }
     }
-    for (test, program) in TESTS.iter().zip(&bench.tests) {
-        let mut tests = bench.vcan(options(test.virtual_time));
-        tests.arg(program).arg("--nocapture").env("XT28_VCAN", "vcan0");
-        let tests = harness(&mut tests);
-        report.tally += tests.tally;
-        report.failures.extend(tests.failures);
+
+    fn virtual_time(&self) -> bool {
+        match self {
+            Self::Check(check) => check.virtual_time,
+            Self::Test(test, _) => test.virtual_time,
+        }
     }
-    report
 }
 
 /// What the checks run with: programs built outside, since a guest is slow at compiling.
@@ -139,50 +163,93 @@ impl Bench {
         let cache = cache.folder(&workspace.target)?;
         // First, for it may ask for packages: better at once than after the builds.
         Guest::prepare(&cache)?;
-        let programs = ["--package=xt28", "--package=ecu-emu", "--package=gateway", "--bins"];
-        let built = build(&workspace.root, &[&["build"][..], &programs].concat())?;
-        let tests = TESTS.iter().map(|Test { package, test, .. }| {
-            let (package, of) = (format!("--package={package}"), format!("--test={test}"));
-            let built = build(&workspace.root, &["test", "--no-run", &package, &of])?;
-            executable(&built, test)
+        // Of the whole workspace, so that features are those of the other stages, and what these
+        // have built is not built again with fewer.
+        let built = build(&workspace.root, &["build", "--workspace", "--bins"])?;
+        let named: Vec<_> = TESTS.iter().map(|of| format!("--test={}", of.test)).collect();
+        let mut arguments = vec!["test", "--no-run", "--workspace"];
+        arguments.extend(named.iter().map(String::as_str));
+        let with_tests = build(&workspace.root, &arguments)?;
+        let tests = TESTS.iter().map(|Test { folder, test, .. }| {
+            let manifest = workspace.root.join(folder).join("Cargo.toml");
+            let own = with_tests.iter().filter(|artifact| artifact.manifest_path == manifest);
+            executable(own, test)
         });
         let tests = tests.collect::<Outcome<Vec<_>>>()?;
         let logs = workspace.target.join("vcan-scenarios");
         fs::create_dir_all(&logs)?;
-        Ok(Self { xt28: executable(&built, "xt28")?, tests, cache, logs })
+        Ok(Self { xt28: executable(built.iter(), "xt28")?, tests, cache, logs })
     }
 
-    /// This very program as `vcan`, with further arguments.
-    fn vcan(&self, arguments: &[&str]) -> Command {
+    /// Runs all of it in guests, as many at a time as there are lanes.
+    fn run(&self, work: &[Work], lanes: usize, report: &mut Report) {
+        let commands = work.iter().map(|work| self.command(work)).collect();
+        side_by_side::run(commands, lanes, |index, done| {
+            println!("--- {}\n{}", work[index].name(), done.said.trim_end());
+            match &work[index] {
+                Work::Check(check) => {
+                    let name = format!("vcan {}", check.log);
+                    let outcome = self.judge(check, done.status);
+                    report.tally += Tally::one(outcome.is_ok());
+                    match outcome {
+                        Ok(()) => println!("{name} ... ok"),
+                        Err(why) => {
+                            println!("{name} ... FAILED: {why}");
+                            report.failures.push(name);
+                        }
+                    }
+                }
+                Work::Test(..) => {
+                    let mut reader = Reader::default();
+                    done.said.lines().for_each(|line| reader.line(line));
+                    let tests = reader.end(done.status.is_ok_and(|status| status.success()));
+                    report.tally += tests.tally;
+                    report.failures.extend(tests.failures);
+                }
+            }
+        });
+    }
+
+    /// This very program as `vcan`, and what is to run in the guest.
+    fn command(&self, work: &Work) -> Command {
         let own = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("xtask"));
         let mut command = Command::new(own);
-        command.args(["vcan", "--timeout", TIMEOUT_S, "--cache"]).arg(&self.cache).args(arguments);
+        command.args(["vcan", "--timeout", TIMEOUT_S, "--cache"]).arg(&self.cache);
+        if work.virtual_time() {
+            command.arg("--virtual-time");
+        }
+        command.arg("--");
+        match work {
+            Work::Check(check) => command
+                .arg(&self.xt28)
+                .args(["run", check.scenario, "--bus", "vcan0", "--record"])
+                .arg(self.log(check.log)),
+            Work::Test(_, program) => {
+                command.arg(program).arg("--nocapture").env("XT28_VCAN", "vcan0")
+            }
+        };
         command
     }
 
-    fn check(&self, check: &Check) -> Outcome<()> {
-        let time = if check.virtual_time { "in virtual time" } else { "in real time" };
-        println!("--- {} on vcan0, {time}", check.scenario);
-        let log = self.logs.join(format!("{}.log", check.log));
-        let mut run = self.vcan(options(check.virtual_time));
-        run.arg(&self.xt28).args(["run", check.scenario, "--bus", "vcan0", "--record"]).arg(&log);
-        let status = run.status()?;
+    fn log(&self, name: &str) -> PathBuf {
+        self.logs.join(format!("{name}.log"))
+    }
+
+    /// Whether a scenario that has ended came to what it must.
+    fn judge(&self, check: &Check, status: io::Result<ExitStatus>) -> Outcome<()> {
+        let status = status?;
         // 1 is a verdict: asserted where it cannot depend on what else the machine does.
         if !status.success() && (check.virtual_time || status.code() != Some(1)) {
             return Err(format!("xt28 ended with {status}").into());
         }
+        let log = self.log(check.log);
         let logged = fs::read(&log).map_err(|error| format!("{}: {error}", log.display()))?;
         if logged.is_empty() {
             return Err("candump logged nothing".into());
         }
         let Some(earlier) = check.repeats else { return Ok(()) };
-        same(&fs::read(self.logs.join(format!("{earlier}.log")))?, &logged)
+        same(&fs::read(self.log(earlier))?, &logged)
     }
-}
-
-/// What goes before a command of the guest.
-const fn options(virtual_time: bool) -> &'static [&'static str] {
-    if virtual_time { &["--virtual-time", "--"] } else { &["--"] }
 }
 
 /// Whether two logs are the same, and the first line where they part.
@@ -220,8 +287,8 @@ fn build(root: &Path, arguments: &[&str]) -> Outcome<Vec<Artifact>> {
     if status.success() { Ok(built) } else { Err(format!("cargo {arguments:?}: {status}").into()) }
 }
 
-fn executable(built: &[Artifact], name: &str) -> Outcome<PathBuf> {
-    let found = built.iter().filter(|artifact| artifact.target.name == name);
+fn executable<'a>(built: impl Iterator<Item = &'a Artifact>, name: &str) -> Outcome<PathBuf> {
+    let found = built.filter(|artifact| artifact.target.name == name);
     let mut paths = found.filter_map(|artifact| artifact.executable.clone());
     Ok(paths.next().ok_or_else(|| format!("cargo built no {name}"))?.into_std_path_buf())
 }

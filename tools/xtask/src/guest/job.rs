@@ -69,7 +69,7 @@ impl Guest {
             let at = at.display();
             return Err(format!("{at}: a guest takes no path with a space; set TMPDIR").into());
         }
-        fs::write(at.join("job.sh"), script(job)?)?;
+        fs::write(at.join("job.sh"), script(job, at)?)?;
         fs::write(at.join("init.sh"), INIT)?;
         fs::set_permissions(at.join("init.sh"), fs::Permissions::from_mode(0o755))?;
         let mut guest = self
@@ -116,11 +116,16 @@ impl Guest {
 }
 
 /// The shell script that init runs: this process's environment, the folder, the command.
-fn script(job: &Job) -> Outcome<String> {
+///
+/// Temporary files go to `temporary`, which no other guest has: all begin with the same process
+/// numbers, in virtual time with the same chance as well, and they share the host's files.
+fn script(job: &Job, temporary: &Path) -> Outcome<String> {
+    let temporary = temporary.to_str().ok_or("the temporary folder's name is not UTF-8")?;
     let mut script = String::new();
     let inherited = std::env::vars_os()
         .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)));
-    for (name, value) in inherited.chain(job.environment.iter().cloned()) {
+    let own = [("TMPDIR".to_owned(), temporary.to_owned())];
+    for (name, value) in inherited.chain(own).chain(job.environment.iter().cloned()) {
         if is_name(&name) {
             script += &format!("export {name}={}\n", quoted(&value));
         }
@@ -209,7 +214,7 @@ mod tests {
     fn a_word_comes_through_the_shell_as_it_is() {
         let words = ["a b", "it's", "$HOME `x` \"y\"", "", "*", "two\nlines"];
         let command: Vec<&str> = ["printf", "%s|"].into_iter().chain(words).collect();
-        let script = script(&job(&command)).unwrap();
+        let script = script(&job(&command), Path::new("/")).unwrap();
         let output = Command::new("sh").args(["-c", &script]).output().unwrap();
         let expected: String = words.iter().map(|word| format!("{word}|")).collect();
         assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
@@ -217,9 +222,18 @@ mod tests {
 
     #[test]
     fn the_job_s_environment_wins_over_ours() {
-        let script = script(&job(&["sh", "-c", "printf %s \"$XT28_WORD\""])).unwrap();
+        let script =
+            script(&job(&["sh", "-c", "printf %s \"$XT28_WORD\""]), Path::new("/")).unwrap();
         let output = Command::new("sh").args(["-c", &script]).output().unwrap();
         assert_eq!(String::from_utf8(output.stdout).unwrap(), "it's $HOME");
+    }
+
+    #[test]
+    fn temporary_files_are_the_guest_s_own() {
+        let script =
+            script(&job(&["sh", "-c", "printf %s \"$TMPDIR\""]), Path::new("/a guest")).unwrap();
+        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), "/a guest");
     }
 
     #[test]

@@ -8,7 +8,7 @@ mod program;
 use std::env;
 use std::fs::{self, File};
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -40,20 +40,22 @@ pub(crate) fn run(
     // Opened only to be refused here, with one message, rather than by three programs.
     SocketCan::open(bus)?;
     setup.policy()?;
-    let folder = Scratch::new()?;
-    let log = artefacts.log().map_or_else(|| folder.path.join("candump.log"), Path::to_owned);
+    // Gone with the run, and nobody else's: machines in containers may share process numbers and /tmp.
+    let scratch = tempfile::Builder::new().prefix("xt28-run-").tempdir()?;
+    let folder = scratch.path();
+    let log = artefacts.log().map_or_else(|| folder.join("candump.log"), Path::to_owned);
     let begun = Instant::now();
-    let start = drive(setup, bus, &folder.path, &log)?;
+    let start = drive(setup, bus, folder, &log)?;
     let wall_s = begun.elapsed().as_secs_f64();
 
     let name = log.display().to_string();
     let trace = Recording::read(BufReader::new(File::open(&log)?), &name, start.run)?;
-    let truth = folder.path.join(TRUTH);
+    let truth = folder.join(TRUTH);
     let ahead_s = start.run.since(start.emulator).as_secs_f64();
     let truth = Truth::read(BufReader::new(File::open(&truth)?), TRUTH, -ahead_s)?;
     let log_sha256 = sha256(&fs::read(&log)?);
     // A gateway that was killed has said nothing.
-    let said = fs::read_to_string(folder.path.join(ACCOUNT))?;
+    let said = fs::read_to_string(folder.join(ACCOUNT))?;
     let mut driven = serde_json::from_str::<Driven>(&said).ok();
     if let Some(driven) = &mut driven {
         // The run's end is what interrupts it.
@@ -207,24 +209,4 @@ fn gnss_path(emulator: &mut Program) -> Result<String, Failure> {
         .map_err(|error| format!("ecu-emu said `{}`, not a line of JSON: {error}", line.trim()))?;
     let path = said["gnss"].as_str();
     Ok(path.ok_or_else(|| format!("ecu-emu said `{}`, without gnss", line.trim()))?.to_owned())
-}
-
-/// A folder for the run's own files, gone with the run.
-struct Scratch {
-    path: PathBuf,
-}
-
-impl Scratch {
-    fn new() -> Result<Self, Failure> {
-        let path = std::env::temp_dir().join(format!("xt28-run-{}", std::process::id()));
-        fs::create_dir_all(&path)?;
-        Ok(Self { path })
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // What can't be removed is left to the system's own cleaning.
-        let _ = fs::remove_dir_all(&self.path);
-    }
 }

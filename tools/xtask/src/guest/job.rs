@@ -220,20 +220,22 @@ mod tests {
         assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
     }
 
+    /// What the variable is where the job runs.
+    fn variable(name: &str) -> String {
+        let print = format!("printf %s \"${name}\"");
+        let script = script(&job(&["sh", "-c", &print]), Path::new("/a guest")).unwrap();
+        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    }
+
     #[test]
     fn the_job_s_environment_wins_over_ours() {
-        let script =
-            script(&job(&["sh", "-c", "printf %s \"$XT28_WORD\""]), Path::new("/")).unwrap();
-        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
-        assert_eq!(String::from_utf8(output.stdout).unwrap(), "it's $HOME");
+        assert_eq!(variable("XT28_WORD"), "it's $HOME");
     }
 
     #[test]
     fn temporary_files_are_the_guest_s_own() {
-        let script =
-            script(&job(&["sh", "-c", "printf %s \"$TMPDIR\""]), Path::new("/a guest")).unwrap();
-        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
-        assert_eq!(String::from_utf8(output.stdout).unwrap(), "/a guest");
+        assert_eq!(variable("TMPDIR"), "/a guest");
     }
 
     #[test]

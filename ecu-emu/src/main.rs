@@ -5,6 +5,7 @@
 
 mod args;
 mod realtime;
+mod schedule;
 mod serial;
 mod wire_buses;
 

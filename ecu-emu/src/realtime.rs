@@ -17,6 +17,7 @@ use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
+use crate::schedule::Schedule;
 use crate::serial::Serial;
 use crate::wire_buses::WireBuses;
 
@@ -39,14 +40,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     println!("{{\"bus\":\"{}\",\"gnss\":\"{}\"}}", args.bus, serial.path().display());
     std::io::stdout().flush()?;
 
-    let start = Instant::now();
+    let mut schedule = Schedule::new(Instant::now());
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
-    let mut lateness = Lateness::default();
     while !stop.load(Ordering::Relaxed) && last.is_none_or(|last| now.since(SimTime::ZERO) < last) {
-        let due = start + now.since(SimTime::ZERO);
-        listen_until(&mut bus, &mut emulator, (due, now), start)?;
-        lateness.add(due.elapsed());
+        if !listen_until_due(&mut bus, &mut emulator, now, &schedule)? {
+            // What came meanwhile is stale: ECUs that stood still heard nothing.
+            while bus.receive()?.is_some() {}
+            wires.discard()?;
+            schedule.put_off(now, Instant::now());
+        }
+        schedule.begin(now, Instant::now());
         out.clear();
         if let Some((file, path)) = &mut truth {
             write_truth_row(file, now, emulator.truth())
@@ -68,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     if let Some((file, path)) = &mut truth {
         file.flush().map_err(|error| format!("{}: {error}", path.display()))?;
     }
-    eprintln!("ecu-emu: {lateness}");
+    eprintln!("ecu-emu: {schedule}");
     Ok(())
 }
 
@@ -118,48 +122,33 @@ fn open_truth(path: &Path) -> Result<(BufWriter<File>, PathBuf), Problem> {
     Ok((file, path.to_owned()))
 }
 
-/// Takes frames off the bus until `due`, the tick of `now`; sleeps in between.
+/// Takes frames off the bus until the tick of `now` is due; sleeps in between. False if the program was
+/// halted meanwhile.
 ///
-/// An emulator that is behind hears no frame later than its own time: one that came while it was halted
+/// An emulator that is behind hears no frame later than its own time: one that came while it was held up
 /// must not count as fresh until it has caught up.
-fn listen_until(
+fn listen_until_due(
     bus: &mut SocketCan,
     emulator: &mut Emulator,
-    (due, now): (Instant, SimTime),
-    start: Instant,
-) -> Result<(), Problem> {
+    now: SimTime,
+    schedule: &Schedule,
+) -> Result<bool, Problem> {
     loop {
         while let Some(received) = bus.receive()? {
-            let since = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
-            emulator.on_frame(SimTime::from_nanos(since).min(now), &received.frame);
+            let at = Instant::now();
+            if schedule.is_halted(now, at) {
+                return Ok(false);
+            }
+            emulator.on_frame(schedule.time(at).min(now), &received.frame);
         }
-        let left = due.saturating_duration_since(Instant::now());
+        let at = Instant::now();
+        if schedule.is_halted(now, at) {
+            return Ok(false);
+        }
+        let left = schedule.due(now).saturating_duration_since(at);
         if left.is_zero() {
-            return Ok(());
+            return Ok(true);
         }
         bus.wait(left)?;
-    }
-}
-
-/// How late ticks began.
-#[derive(Debug, Default)]
-struct Lateness {
-    ticks: u32,
-    total: Duration,
-    worst: Duration,
-}
-
-impl Lateness {
-    fn add(&mut self, late: Duration) {
-        self.ticks += 1;
-        self.total += late;
-        self.worst = self.worst.max(late);
-    }
-}
-
-impl std::fmt::Display for Lateness {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let mean = self.total.checked_div(self.ticks).unwrap_or_default();
-        write!(f, "{} ticks, late {mean:.0?} on average, {:.0?} at worst", self.ticks, self.worst)
     }
 }

@@ -27,6 +27,14 @@ impl WireBuses {
         Ok(())
     }
 
+    /// Throws away what others sent since the last tick.
+    pub(crate) fn discard(&mut self) -> Result<(), Problem> {
+        for (_, bus) in &mut self.buses {
+            while bus.receive()?.is_some() {}
+        }
+        Ok(())
+    }
+
     /// Sends what the machine put on its wires in this tick.
     pub(crate) fn send(&mut self, now: SimTime, emulator: &Emulator) -> Result<(), Problem> {
         for (wire, bus) in &mut self.buses {

@@ -78,6 +78,7 @@ const TESTS: &[Test] = &[
     // A service tool gives up on an ECU that a loaded machine makes late.
     Test { folder: "ecu-emu", test: "service_tool", virtual_time: true },
     Test { folder: "ecu-emu", test: "wires", virtual_time: true },
+    Test { folder: "ecu-emu", test: "halt", virtual_time: true },
 ];
 
 /// How many checks [`run_all`] has, each test program counted as one.

@@ -43,17 +43,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     let mut schedule = Schedule::new(Instant::now());
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
-    while !stop.load(Ordering::Relaxed) && last.is_none_or(|last| now.since(SimTime::ZERO) < last) {
-        if !listen_until_due(&mut bus, &mut emulator, now, &schedule)? {
-            // What came meanwhile is stale: ECUs that stood still heard nothing.
-            while bus.receive()?.is_some() {}
+    let over = |wall: SimTime| last.is_some_and(|last| wall.since(SimTime::ZERO) >= last);
+    while !stop.load(Ordering::Relaxed) && !over(schedule.on_the_wall(now)) {
+        listen_until_due(&mut bus, &mut emulator, now, &schedule)?;
+        let at = Instant::now();
+        if schedule.is_stale(now, at) {
             wires.discard()?;
-            schedule.put_off(now, Instant::now());
         }
-        schedule.begin(now, Instant::now());
+        schedule.begin(now, at);
         out.clear();
         if let Some((file, path)) = &mut truth {
-            write_truth_row(file, now, emulator.truth())
+            write_truth_row(file, schedule.on_the_wall(now), emulator.truth())
                 .map_err(|error| format!("{}: {error}", path.display()))?;
         }
         wires.listen(now, &mut emulator)?;
@@ -122,32 +122,26 @@ fn open_truth(path: &Path) -> Result<(BufWriter<File>, PathBuf), Problem> {
     Ok((file, path.to_owned()))
 }
 
-/// Takes frames off the bus until the tick of `now` is due; sleeps in between. False if the program was
-/// halted meanwhile.
+/// Takes frames off the bus until the tick of `now` is due; sleeps in between.
 ///
-/// An emulator that is behind hears no frame later than its own time: one that came while it was held up
-/// must not count as fresh until it has caught up.
+/// An emulator that is behind hears no frame later than its own time: one that came while it was held up must
+/// not count as fresh until it has caught up. After a halt it has heard none of those that waited.
 fn listen_until_due(
     bus: &mut SocketCan,
     emulator: &mut Emulator,
     now: SimTime,
     schedule: &Schedule,
-) -> Result<bool, Problem> {
+) -> Result<(), Problem> {
     loop {
         while let Some(received) = bus.receive()? {
             let at = Instant::now();
-            if schedule.is_halted(now, at) {
-                return Ok(false);
+            if !schedule.is_stale(now, at) {
+                emulator.on_frame(schedule.time(at).min(now), &received.frame);
             }
-            emulator.on_frame(schedule.time(at).min(now), &received.frame);
         }
-        let at = Instant::now();
-        if schedule.is_halted(now, at) {
-            return Ok(false);
-        }
-        let left = schedule.due(now).saturating_duration_since(at);
+        let left = schedule.due(now).saturating_duration_since(Instant::now());
         if left.is_zero() {
-            return Ok(true);
+            return Ok(());
         }
         bus.wait(left)?;
     }

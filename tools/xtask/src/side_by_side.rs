@@ -1,6 +1,6 @@
 //! Commands several at a time, what each of them says in one piece.
 
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 use std::process::{Command, ExitStatus};
 use std::sync::{Mutex, mpsc};
 use std::thread;
@@ -24,8 +24,10 @@ pub(crate) fn run(commands: Vec<Command>, lanes: usize, mut done: impl FnMut(usi
             let take = || queue.lock().ok()?.next();
             scope.spawn(move || {
                 while let Some((index, command)) = take() {
-                    // Whoever listened is gone only where `done` panicked, and that ends all.
-                    let _ = sender.send((index, to_its_end(command)));
+                    // Nobody listens any more where `done` panicked.
+                    if sender.send((index, to_its_end(command))).is_err() {
+                        return;
+                    }
                 }
             });
         }
@@ -36,18 +38,18 @@ pub(crate) fn run(commands: Vec<Command>, lanes: usize, mut done: impl FnMut(usi
     });
 }
 
+/// Runs a command to its own end. It talks into a file: a pipe would stay open for as long as anything that it
+/// left behind.
 fn to_its_end(mut command: Command) -> Done {
     let mut said = Vec::new();
-    let mut read_and_wait = || {
-        let (mut reader, writer) = io::pipe()?;
-        command.stdout(writer.try_clone()?).stderr(writer);
-        let mut child = command.spawn()?;
-        // Holds ends of the pipe to write to; with them open its end would never be read.
-        command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
-        reader.read_to_end(&mut said)?;
-        child.wait()
+    let mut run = || {
+        let mut file = tempfile::tempfile()?;
+        let status = command.stdout(file.try_clone()?).stderr(file.try_clone()?).status()?;
+        file.rewind()?;
+        file.read_to_end(&mut said)?;
+        Ok(status)
     };
-    let status = read_and_wait();
+    let status = run();
     Done { said: String::from_utf8_lossy(&said).into_owned(), status }
 }
 
@@ -80,7 +82,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let meet = |own: &str, other: &str| {
             let at = folder.path().display();
-            shell(&format!("touch {at}/{own}; until test -e {at}/{other}; do sleep 0.01; done"))
+            let wait = format!(
+                "for _ in $(seq 1000); do test -e {at}/{other} && exit 0; sleep 0.01; done"
+            );
+            shell(&format!("touch {at}/{own}; {wait}; exit 1"))
         };
         let mut ended = 0;
         run(vec![meet("a", "b"), meet("b", "a")], 2, |_, done| {
@@ -88,6 +93,13 @@ mod tests {
             ended += 1;
         });
         assert_eq!(ended, 2);
+    }
+
+    #[test]
+    fn what_a_command_leaves_behind_is_not_waited_for() {
+        let begun = std::time::Instant::now();
+        run(vec![shell("sleep 60 & echo gone")], 1, |_, done| assert_eq!(done.said, "gone\n"));
+        assert!(begun.elapsed().as_secs() < 30);
     }
 
     #[test]

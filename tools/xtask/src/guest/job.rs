@@ -69,7 +69,9 @@ impl Guest {
             let at = at.display();
             return Err(format!("{at}: a guest takes no path with a space; set TMPDIR").into());
         }
-        fs::write(at.join("job.sh"), script(job, at)?)?;
+        let temporary = at.join("tmp");
+        fs::create_dir(&temporary)?;
+        fs::write(at.join("job.sh"), script(job, &temporary)?)?;
         fs::write(at.join("init.sh"), INIT)?;
         fs::set_permissions(at.join("init.sh"), fs::Permissions::from_mode(0o755))?;
         let mut guest = self

@@ -56,6 +56,7 @@ impl Bench {
     /// Runs all of it in guests, as many at a time as there are lanes.
     pub(super) fn run(&self, work: &[Work], lanes: usize, report: &mut Report) {
         let commands = work.iter().map(|work| self.command(work)).collect();
+        println!("{} to run, {lanes} at a time; each is told of when it is done", work.len());
         side_by_side::run(commands, lanes, |index, done| {
             println!("--- {}\n{}", work[index].name(), done.said.trim_end());
             match &work[index] {
@@ -71,11 +72,20 @@ impl Bench {
                         }
                     }
                 }
-                Work::Test(..) => {
+                Work::Test(test, _) => {
                     let mut reader = Reader::default();
                     done.said.lines().for_each(|line| reader.line(line));
+                    let name = format!("vcan tests of {}", test.test);
+                    match &done.status {
+                        Ok(status) if status.success() => (),
+                        Ok(status) => println!("{name} ended with {status}"),
+                        Err(error) => println!("{name} could not be run: {error}"),
+                    }
                     let tests = reader.end(done.status.is_ok_and(|status| status.success()));
                     report.tally += tests.tally;
+                    // Where what a test said came between its name and its end, the line names none.
+                    let nameless = tests.tally.failed > 0 && tests.failures.is_empty();
+                    report.failures.extend(nameless.then_some(name));
                     report.failures.extend(tests.failures);
                 }
             }
@@ -120,7 +130,10 @@ impl Bench {
             return Err("candump logged nothing".into());
         }
         let Some(earlier) = check.repeats else { return Ok(()) };
-        same(&fs::read(self.log(earlier))?, &logged)
+        let earlier = self.log(earlier);
+        let first =
+            fs::read(&earlier).map_err(|error| format!("{}: {error}", earlier.display()))?;
+        same(&first, &logged)
     }
 }
 

@@ -10,6 +10,7 @@ use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 
 use crate::args::Args;
+use crate::freshness::Freshness;
 use crate::lateness::Lateness;
 use crate::problem::Problem;
 use crate::serial::SerialPort;
@@ -55,6 +56,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         interrupt,
         arm,
         start: Instant::now(),
+        freshness: Freshness::default(),
         ending: false,
         never_armed: None,
     };
@@ -79,6 +81,7 @@ struct Run {
     /// Raised by SIGUSR1: the order to arm again, after a stop that somebody has looked at.
     arm: Arc<AtomicBool>,
     start: Instant,
+    freshness: Freshness,
     /// The order to disarm was given.
     ending: bool,
     never_armed: Option<Reason>,
@@ -121,9 +124,12 @@ impl Run {
     fn listen_until(&mut self, due: Duration) -> Result<(), Problem> {
         loop {
             let start = self.start;
+            let looked = start.elapsed();
             while let Some(frame) = self.wire.receive(|| start.elapsed())? {
-                self.gateway.on_frame(sim_time(self.start.elapsed()), &frame);
+                let at = self.freshness.came_in(start.elapsed());
+                self.gateway.on_frame(sim_time(at), &frame);
             }
+            self.freshness.looked(looked);
             let left = due.saturating_sub(self.start.elapsed());
             if left.is_zero() {
                 return Ok(());
@@ -134,9 +140,9 @@ impl Run {
 
     fn read_gnss(&mut self, bytes: &mut [u8]) -> Result<(), Problem> {
         let Some(port) = &mut self.port else { return Ok(()) };
-        let now = sim_time(self.start.elapsed());
+        let at = sim_time(self.freshness.came_in(self.start.elapsed()));
         let lost = port
-            .drain(bytes, |bytes| self.gateway.on_gnss(now, bytes))
+            .drain(bytes, |bytes| self.gateway.on_gnss(at, bytes))
             .map_err(Problem::ReadGnss)?;
         if lost {
             eprintln!("gateway: the receiver's port was closed");

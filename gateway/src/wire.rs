@@ -16,14 +16,15 @@ use xt28_machine::SimTime;
 
 use crate::problem::Problem;
 
-/// No frame waits longer in the socket: the loop looks every tick. An age beyond it says that the
-/// wall clock was set in between.
-const AGE_MAX: Duration = Duration::from_secs(1);
+/// How much longer than since the last look a frame seems to have waited, by the wall clock's pace.
+const SLACK: Duration = Duration::from_millis(10);
 
 /// An interface, recorded or not.
 pub(crate) struct Wire {
     socket: SocketCan,
     start: SystemTime,
+    /// When the socket was last found empty, on the run's clock.
+    emptied: Duration,
     log: Option<Writer<BufWriter<File>>>,
 }
 
@@ -44,7 +45,7 @@ impl Wire {
                 Some(Writer::new(BufWriter::new(file), interface).starting_at(epoch))
             }
         };
-        Ok(Self { socket, start, log })
+        Ok(Self { socket, start, emptied: Duration::ZERO, log })
     }
 
     pub(crate) fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Problem> {
@@ -57,9 +58,15 @@ impl Wire {
         &mut self,
         since_start: impl Fn() -> Duration,
     ) -> Result<Option<Frame>, Problem> {
-        let Some(received) = self.socket.receive()? else { return Ok(None) };
+        let looked = since_start();
+        let Some(received) = self.socket.receive()? else {
+            self.emptied = looked;
+            return Ok(None);
+        };
+        let now = since_start();
         let wall = SystemTime::now().duration_since(self.start).unwrap_or_default();
-        let at = heard_at(since_start(), wall, received.at.since(SimTime::ZERO));
+        let waited = now.saturating_sub(self.emptied) + SLACK;
+        let at = heard_at(now, waited, wall, received.at.since(SimTime::ZERO));
         self.log(at, &received.frame)?;
         Ok(Some(received.frame))
     }
@@ -90,9 +97,10 @@ impl Wire {
 }
 
 /// When a frame came in, on the run's clock: `now` less its age, which is what the wall clock says now
-/// (`wall`) less what it said then (`stamp`), all since the start.
-fn heard_at(now: Duration, wall: Duration, stamp: Duration) -> SimTime {
-    let age = wall.checked_sub(stamp).filter(|age| *age <= AGE_MAX).unwrap_or_default();
+/// (`wall`) less what it said then (`stamp`), all since the start. An age beyond `waited` says that the wall
+/// clock was set in between.
+fn heard_at(now: Duration, waited: Duration, wall: Duration, stamp: Duration) -> SimTime {
+    let age = wall.checked_sub(stamp).filter(|age| *age <= waited).unwrap_or_default();
     SimTime::ZERO + now.saturating_sub(age)
 }
 
@@ -103,7 +111,10 @@ mod tests {
     #[test]
     fn a_frame_is_logged_when_it_came_in_whatever_the_wall_clock_says() {
         let ms = Duration::from_millis;
-        let at = |now, wall, stamp| heard_at(ms(now), ms(wall), ms(stamp)).as_nanos() / 1_000_000;
+        let heard = |now, waited, wall, stamp| {
+            heard_at(ms(now), ms(waited), ms(wall), ms(stamp)).as_nanos() / 1_000_000
+        };
+        let at = |now, wall, stamp| heard(now, 20, wall, stamp);
         assert_eq!(at(5_000, 5_000, 4_991), 4_991);
         // Set by an hour before the frame came: only its age counts.
         assert_eq!(at(5_000, 3_605_000, 3_604_991), 4_991);
@@ -112,5 +123,7 @@ mod tests {
         // Set between stamp and taking, either way.
         assert_eq!(at(5_000, 3_605_000, 4_991), 5_000);
         assert_eq!(at(5_000, 1_000, 4_991), 5_000);
+        // Read after a halt of ten seconds.
+        assert_eq!(heard(15_000, 10_010, 15_000, 5_100), 5_100);
     }
 }

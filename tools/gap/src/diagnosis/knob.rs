@@ -8,7 +8,7 @@ use xt28_sim::effects::{Block, CATALOGUE, Effect, LOCK_STIFFNESS, Parameter, Sco
 
 /// Share of an effect's tolerance by which a sound machine is off, all effects at once. A tolerance is
 /// what one believes of one effect before seeing data; two hundred of them at their full width bend to
-/// a third of a valve's gain (measured on foreign plants, docs/diagnosis.md).
+/// a third of a valve's gain (measured on foreign plants, docs/diagnosis-log.md, item 6).
 const SOUND: f64 = 0.4;
 /// How many of its own a knob goes beside a right answer; one that goes further hides something.
 pub(crate) const SHIFT_MAX: f64 = 2.5;
@@ -56,7 +56,7 @@ pub static TOLERANCES: &[Tolerance] = &[
         sigma: 0.05,
         apply: |m, f| m.vehicle.joint_damping_nms *= f,
     },
-    // How tyres scrub as joints turn: plants differ in it by as much (docs/diagnosis.md).
+    // How tyres scrub as joints turn: plants differ in it by as much (docs/diagnosis-log.md, item 9).
     Tolerance { name: "scrub", sigma: 0.3, apply: |m, f| m.wheels.friction *= f },
     Tolerance { name: "drive gain", sigma: 0.05, apply: |m, f| m.vehicle.circuit_gain_nms *= f },
     Tolerance {

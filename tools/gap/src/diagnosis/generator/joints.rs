@@ -52,7 +52,7 @@ pub(super) fn joint_errors(
     let mut oil_rad = angle.first().copied().unwrap_or_default();
     // Within the play nothing is held: where the joint is then is the ground's matter, and a play that
     // is wide enough would explain anything. So that time counts as an ordinary error, also where it
-    // would be less without a play: counted as that, sound machines get one (docs/diagnosis.md, item 48).
+    // would be less without a play: counted as that, sound machines get one (docs/diagnosis-log.md, item 48).
     let excused = (half_play / EXCUSED_RAD).powi(2).min(1.0);
     let mut is_free = vec![false; signals.len];
     let error: Samples = (0..signals.len)

@@ -158,7 +158,12 @@ impl Run {
         out.clear();
         // Receiver bytes and frames came in up to here.
         let now = sim_time(now.max(self.start.elapsed()));
+        let ran = !matches!(self.gateway.status().phase, Phase::Blocked(_));
         self.gateway.tick(now, out);
+        if ran && matches!(self.gateway.status().phase, Phase::Blocked(_)) {
+            // What a full queue still holds would move the machine once the bus takes it again.
+            self.wire.discard_waiting();
+        }
         out.frames().iter().try_for_each(|frame| self.wire.send(now, frame))
     }
 

@@ -76,6 +76,11 @@ impl Wire {
         self.socket.wait(timeout)
     }
 
+    /// Throws away what the kernel has not taken yet.
+    pub(crate) fn discard_waiting(&mut self) {
+        self.socket.discard_backlog();
+    }
+
     pub(crate) fn is_well(&self) -> bool {
         self.socket.state() != BusState::BusOff
     }

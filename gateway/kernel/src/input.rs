@@ -17,7 +17,7 @@ pub struct Input {
     pub drive: Link,
     /// When the other streams last had news.
     pub stamps: Stamps,
-    /// False from a bus fault (bus-off, interface gone) until the bus is well again.
+    /// False from bus-off until the bus is well again. (Where the interface is gone there is nobody left to ask.)
     pub bus_ok: bool,
 }
 

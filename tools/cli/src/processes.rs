@@ -26,8 +26,11 @@ use crate::artefacts::Artefacts;
 
 /// How long candump may take to open its socket. It does not say when it has.
 const CANDUMP_START: Duration = Duration::from_millis(300);
-/// How much longer than the run the gateway is let, s.
+/// How much longer than the run emulator and gateway are let, s. They end by themselves where this program was
+/// ended before it could end them.
 const BEYOND_S: f64 = 60.0;
+/// Silence after which candump ends by itself as well, ms.
+const SILENCE_MS: &str = "60000";
 /// How often the programs are looked after.
 const WATCH: Duration = Duration::from_millis(50);
 
@@ -80,7 +83,8 @@ struct Start {
 
 /// Starts the programs, lets the run pass, and stops them.
 fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<Start, Failure> {
-    let mut candump = Program::start("candump", &["-L", bus], Output::To(File::create(log)?))?;
+    let recorder = ["-L", "-T", SILENCE_MS, bus];
+    let mut candump = Program::start("candump", &recorder, Output::To(File::create(log)?))?;
     thread::sleep(CANDUMP_START);
     let arguments = emulator_arguments(setup, bus, folder)?;
     let mut emulator = Program::start_beside("ecu-emu", &arguments, Output::Read)?;
@@ -134,6 +138,7 @@ fn sleep_watching(due: Instant, programs: &mut [&mut Program]) -> Result<(), Fai
 fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<String>, Failure> {
     let mut arguments = vec!["--bus".to_owned(), bus.to_owned()];
     let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
+    add("--duration", (setup.scenario.duration_s + BEYOND_S).to_string());
     add("--seed", setup.seed.to_string());
     add("--solver", setup.solver.to_string());
     add("--truth", folder.join(TRUTH).display().to_string());

@@ -55,7 +55,7 @@ pub struct SocketCounters {
     pub queue_full: u64,
     /// Frames refused because [`BACKLOG_FRAMES`] waited already.
     pub refused: u64,
-    /// Frames thrown away because the controller was bus-off.
+    /// Frames thrown away because the controller was bus-off, or by who sent them ([`SocketCan::discard_backlog`]).
     pub discarded: u64,
     /// Remote frames received, and passed over.
     pub remote: u64,

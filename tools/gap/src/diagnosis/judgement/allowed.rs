@@ -84,7 +84,10 @@ pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64
 /// How large the bump of `after` that comes a third time is beside the largest that a right answer, which is
 /// one of `names` or both, leaves where `before` was there.
 pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2]) -> f64 {
-    if after.samples < SAMPLES_MIN {
+    // A controller that took another of a bunch of commands is off by as much as the target had moved, and is
+    // again with the next bunch: no bump is too large for that, and none comes too often.
+    let bunches = names.contains(&"command-jitter");
+    if after.samples < SAMPLES_MIN || bunches && answers_commands(after) {
         return 0.0;
     }
     let [floor, share] = floor_and_share(names, after);
@@ -126,6 +129,11 @@ fn weighs(_: Generator, signal: Signal) -> bool {
 
 fn controls(generator: Generator, _: Signal) -> bool {
     matches!(generator, Generator::ArmEcu(_) | Generator::SteerEcu(_))
+}
+
+/// Whether the signal is what a controller makes of a command within a tick.
+fn answers_commands(left: &Left) -> bool {
+    controls(left.generator, left.signal) || left.signal == Signal::DrivePressure
 }
 
 #[cfg(test)]
@@ -183,6 +191,21 @@ mod tests {
         assert!(of("valve-lag", 70.0, 28.0) > 2.0);
         assert!(of("valve-lag", 2800.0, 28.0) < 1.0);
         assert!(of("seal-stiction", 70.0, 28.0) < 1.0);
+    }
+
+    #[test]
+    fn commands_that_come_in_bunches_leave_bumps_where_a_controller_answers_them() {
+        let of = |name, generator, signal| {
+            let at = |recurring| Left { recurring, ..left(generator, signal, 20.0, 0.5) };
+            recurring(&[name], [&at(40.0), &at(40.0)])
+        };
+        let arm = (Generator::ArmEcu(Wheel::Fr), Signal::ArmOpening);
+        let drive = (Generator::Drive, Signal::DrivePressure);
+        for (generator, signal) in [arm, drive] {
+            assert!(of("command-jitter", generator, signal) < 1.0);
+            assert!(of("throttle-delay", generator, signal) > 2.0);
+        }
+        assert!(of("command-jitter", Generator::ArmStroke(Wheel::Fr), Signal::Stroke) > 2.0);
     }
 
     #[test]

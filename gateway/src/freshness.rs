@@ -2,9 +2,11 @@
 
 use core::time::Duration;
 
-/// A gap between two looks that is a halt (a debugger, SIGSTOP), not a busy machine: the least time after which
-/// the safety kernel takes what it knows for stale.
-const HALT: Duration = Duration::from_millis(100);
+use xt28_safety::Limits;
+
+/// A gap between two looks that is a halt (a debugger, SIGSTOP), not a busy machine: the safety kernel takes
+/// what its limits lean on for stale after it.
+const HALT: Duration = Duration::from_nanos(Limits::XT28.sensors.span_ns());
 /// How long after a halt input counts as old: a terminal hands out what has waited in portions, some of them a
 /// tick apart.
 const SETTLE: Duration = Duration::from_millis(200);
@@ -29,6 +31,11 @@ impl Freshness {
             Some([as_of, until]) if now < until => as_of,
             _ => now,
         }
+    }
+
+    /// When the last look began that left nothing.
+    pub(crate) const fn last_look(&self) -> Duration {
+        self.looked
     }
 
     /// A look that began `at` this time has left nothing.

@@ -125,7 +125,8 @@ impl Run {
         loop {
             let start = self.start;
             let looked = start.elapsed();
-            while let Some(frame) = self.wire.receive(|| start.elapsed())? {
+            let emptied = self.freshness.last_look();
+            while let Some(frame) = self.wire.receive(|| start.elapsed(), emptied)? {
                 let at = self.freshness.came_in(start.elapsed());
                 self.gateway.on_frame(sim_time(at), &frame);
             }

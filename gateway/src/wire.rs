@@ -23,8 +23,6 @@ const SLACK: Duration = Duration::from_millis(10);
 pub(crate) struct Wire {
     socket: SocketCan,
     start: SystemTime,
-    /// When the socket was last found empty, on the run's clock.
-    emptied: Duration,
     log: Option<Writer<BufWriter<File>>>,
 }
 
@@ -45,7 +43,7 @@ impl Wire {
                 Some(Writer::new(BufWriter::new(file), interface).starting_at(epoch))
             }
         };
-        Ok(Self { socket, start, emptied: Duration::ZERO, log })
+        Ok(Self { socket, start, log })
     }
 
     pub(crate) fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Problem> {
@@ -53,19 +51,16 @@ impl Wire {
         self.log(now, frame)
     }
 
-    /// The next frame; `since_start` is the run's clock.
+    /// The next frame; `since_start` is the run's clock, and `emptied` when no frame was left by it.
     pub(crate) fn receive(
         &mut self,
         since_start: impl Fn() -> Duration,
+        emptied: Duration,
     ) -> Result<Option<Frame>, Problem> {
-        let looked = since_start();
-        let Some(received) = self.socket.receive()? else {
-            self.emptied = looked;
-            return Ok(None);
-        };
+        let Some(received) = self.socket.receive()? else { return Ok(None) };
         let now = since_start();
         let wall = SystemTime::now().duration_since(self.start).unwrap_or_default();
-        let waited = now.saturating_sub(self.emptied) + SLACK;
+        let waited = now.saturating_sub(emptied) + SLACK;
         let at = heard_at(now, waited, wall, received.at.since(SimTime::ZERO));
         self.log(at, &received.frame)?;
         Ok(Some(received.frame))

@@ -73,6 +73,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         file.flush().map_err(|error| format!("{}: {error}", path.display()))?;
     }
     eprintln!("ecu-emu: {schedule}");
+    if let Some(frames @ 1..) = bus.receive_drops() {
+        eprintln!("ecu-emu: {frames} frames came and were lost: nobody read them in time");
+    }
     Ok(())
 }
 

@@ -10,11 +10,14 @@ use std::time::Duration;
 
 use rustix::process::{Pid, Signal, kill_process};
 use xt28_bus::{Bus, SocketCan};
+use xt28_dbc::{CanId, Frame};
+use xt28_machine::SimTime;
 
 /// How often the bus is listened to: its socket holds some 20 ticks of frames.
 const LISTEN: Duration = Duration::from_millis(20);
 const HALF_A_SECOND: u32 = 25;
 const HALT: Duration = Duration::from_secs(5);
+const MANY: u32 = 5_000;
 
 /// The emulator, ended whatever becomes of the test.
 struct Program(Child);
@@ -57,6 +60,9 @@ fn a_halt_puts_no_burst_on_the_bus() {
     heard(&mut bus, 1);
     sleep(HALT);
     assert_eq!(heard(&mut bus, 1), 0, "it is halted");
+    // More than its socket holds.
+    let stray = Frame::new(CanId::Standard(0x7FF), &[0; 8]).unwrap();
+    (0..MANY).for_each(|_| bus.send(SimTime::ZERO, &stray).unwrap());
     kill_process(pid, Signal::CONT).unwrap();
     let after = heard(&mut bus, HALF_A_SECOND);
     kill_process(pid, Signal::TERM).unwrap();
@@ -66,6 +72,8 @@ fn a_halt_puts_no_burst_on_the_bus() {
     let (_, put_off) = said.split_once("put off by ").unwrap_or_else(|| panic!("{said}"));
     let put_off_s: f64 = put_off.split(' ').next().unwrap().parse().unwrap();
     assert!((4.9..6.0).contains(&put_off_s), "{said}");
+    let (_, lost) = said.split_once("ecu-emu: ").unwrap().1.split_once("ecu-emu: ").expect(&said);
+    assert!(lost.ends_with("frames came and were lost: nobody read them in time\n"), "{said}");
     // Half a second is 50 ticks of some 30 frames; made up for, the halt would be 500 more.
     assert!(before > 1000 && after < 2 * before, "{before} frames, then {after}");
 }

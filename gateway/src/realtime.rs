@@ -22,6 +22,8 @@ const TICK: Duration = Duration::from_millis(10);
 pub(crate) struct Finished {
     pub(crate) status: Status,
     pub(crate) lateness: Lateness,
+    /// Received frames that the kernel dropped before anyone read them; none where it does not say.
+    pub(crate) frames_lost: Option<u32>,
     pub(crate) interrupted: bool,
     /// What last stood against arming, if it never came to that.
     pub(crate) never_armed: Option<Reason>,
@@ -116,8 +118,10 @@ impl Run {
         let status = self.gateway.status();
         let interrupted = self.interrupt.load(Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
+        let frames_lost = self.wire.lost();
         self.wire.close()?;
-        Ok(Finished { status, lateness, interrupted, never_armed: self.never_armed, seconds })
+        let never_armed = self.never_armed;
+        Ok(Finished { status, lateness, frames_lost, interrupted, never_armed, seconds })
     }
 
     /// Takes frames until `due`, asleep in between.

@@ -24,7 +24,7 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
 
 /// Two or three lines on stderr.
 pub(crate) fn tell(finished: &Finished) {
-    let Finished { status, lateness, seconds, .. } = finished;
+    let Finished { status, lateness, frames_lost, seconds, .. } = finished;
     match shortfall(finished) {
         None => eprintln!("done in {seconds:.1} s"),
         Some(why) => eprintln!("not done after {seconds:.1} s: {why}"),
@@ -42,11 +42,14 @@ pub(crate) fn tell(finished: &Finished) {
     eprintln!(
         "{ticks} ticks, {missed} missed; late below {p99_ms:.3} ms in 99 %, {worst_ms:.3} ms at worst"
     );
+    if let Some(frames @ 1..) = frames_lost {
+        eprintln!("{frames} frames came and were lost: nobody read them in time");
+    }
 }
 
 /// The same as JSON.
 pub(crate) fn json(finished: &Finished) -> Value {
-    let Finished { status, lateness, interrupted, seconds, .. } = finished;
+    let Finished { status, lateness, frames_lost, interrupted, seconds, .. } = finished;
     let Status { counts, .. } = status;
     json!({
         "pass": shortfall(finished).is_none(),
@@ -67,6 +70,6 @@ pub(crate) fn json(finished: &Finished) -> Value {
                    "allowed": counts.allowed, "clamped": counts.clamped },
         "fixes": { "used": counts.fixes, "incomplete": counts.fixes_incomplete },
         "faults": { "gnss_stream": counts.gnss_faults, "frames_refused": counts.frames_refused,
-                    "frames_unsent": counts.frames_unsent },
+                    "frames_unsent": counts.frames_unsent, "frames_lost": frames_lost },
     })
 }

@@ -76,6 +76,11 @@ impl Wire {
         self.socket.discard_backlog();
     }
 
+    /// Received frames that the kernel dropped because nobody read them in time; none where it does not say.
+    pub(crate) fn lost(&self) -> Option<u32> {
+        self.socket.receive_drops()
+    }
+
     pub(crate) fn is_well(&self) -> bool {
         self.socket.state() != BusState::BusOff
     }

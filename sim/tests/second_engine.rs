@@ -1,4 +1,4 @@
-//! Our solvers against MuJoCo's recorded word on three manoeuvres.
+//! Our solvers against MuJoCo's recorded word on every manoeuvre.
 //!
 //! The recordings are MuJoCo 4.0.0 at 2000 Hz on the model of `tools/yardstick`, made by
 //! `cargo xtask second-engine --only record`. They say what another engine makes of the same parts
@@ -10,9 +10,9 @@
 #[path = "../examples/trajectory/manoeuvre.rs"]
 mod manoeuvre;
 
-use manoeuvre::{Manoeuvre, Sample, yardstick};
+use manoeuvre::{Manoeuvre, Sample, terrain, yardstick};
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::{Bodies, Effects, RapierBodies, ReducedBodies, STEP, Terrain, Vehicle};
+use xt28_sim::{Bodies, Effects, RapierBodies, ReducedBodies, STEP, Vehicle};
 
 /// Steps per second of the plant as the bench runs it.
 const RATE_HZ: u32 = 200;
@@ -73,10 +73,65 @@ const TURN_REDUCED: Bounds = [
     ("ground_force", 150.0),
 ];
 
+/// Arms lifted and lowered while the machine stands.
+const ARMS: Bounds = [
+    ("x_m", 9e-4),
+    ("y_m", 1.3e-4),
+    ("z_m", 4.5e-4),
+    ("yaw", 1.7e-4),
+    ("roll", 3.2e-4),
+    ("pitch", 8e-5),
+    ("joint", 2.1e-4),
+    ("stroke", 3e-4),
+    ("wheel_speed", 0.014),
+    ("ground_force", 160.0),
+];
+/// Up with the right wheels and down again: MuJoCo's wheels touch each triangle that they cut, at the edges of
+/// the ramp two or three at once.
+const RAMP: Bounds = [
+    ("x_m", 0.048),
+    ("y_m", 9e-3),
+    ("z_m", 0.013),
+    ("yaw", 2.8e-3),
+    ("roll", 0.012),
+    ("pitch", 2.5e-3),
+    ("joint", 2.4e-3),
+    ("stroke", 9.7e-3),
+    ("wheel_speed", 0.69),
+    ("ground_force", 12_500.0),
+];
+/// Humps and boulders, with a bend; the same of its edges, which are everywhere.
+const ROUGH: Bounds = [
+    ("x_m", 0.012),
+    ("y_m", 0.013),
+    ("z_m", 9.5e-3),
+    ("yaw", 3.8e-3),
+    ("roll", 3.2e-3),
+    ("pitch", 1.3e-3),
+    ("joint", 3.5e-3),
+    ("stroke", 5.4e-3),
+    ("wheel_speed", 0.41),
+    ("ground_force", 10_200.0),
+];
+
 #[test]
 fn settling_agrees_with_mujoco() {
     agrees::<RapierBodies>("settle", &SETTLE);
     agrees::<ReducedBodies>("settle", &SETTLE);
+}
+
+#[test]
+fn arms_that_move_agree_with_mujoco() {
+    agrees::<RapierBodies>("arms", &ARMS);
+    agrees::<ReducedBodies>("arms", &ARMS);
+}
+
+#[test]
+fn ground_that_is_not_level_agrees_with_mujoco() {
+    for (name, bounds) in [("ramp", RAMP), ("rough", ROUGH)] {
+        agrees::<RapierBodies>(name, &bounds);
+        agrees::<ReducedBodies>(name, &bounds);
+    }
 }
 
 #[test]
@@ -122,7 +177,8 @@ fn distances<B: Bodies>(name: &str, machine: &Machine) -> Vec<(String, f64)> {
     let manoeuvre = Manoeuvre::load(name).expect("the file of manoeuvres has it");
     let strokes = PerWheel::splat(manoeuvre.start_stroke_m);
     let effects = Effects::default();
-    let mut vehicle = Vehicle::<B>::with(machine, &effects, &Terrain::Flat, strokes, STEP);
+    let ground = terrain(&manoeuvre.terrain).expect("the manoeuvre's ground");
+    let mut vehicle = Vehicle::<B>::with(machine, &effects, &ground, strokes, STEP);
     manoeuvre.settle(&mut vehicle, RATE_HZ);
 
     let mut apart: Vec<(String, f64)> = header.split(',').map(|c| (c.to_owned(), 0.0)).collect();

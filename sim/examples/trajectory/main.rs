@@ -11,7 +11,7 @@ mod manoeuvre;
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use manoeuvre::{Manoeuvre, Sample, yardstick};
+use manoeuvre::{Manoeuvre, Sample, terrain};
 use rustix::time::{ClockId, clock_gettime};
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{Bodies, Effects, Plant, RapierBodies, ReducedBodies, Terrain, Vehicle};
@@ -44,14 +44,6 @@ fn main() -> Result<(), String> {
         _ => return Err(USAGE.to_owned()),
     }
     Ok(())
-}
-
-/// Level ground, or a terrain file of the yardstick.
-fn terrain(name: &str) -> Result<Terrain, String> {
-    if name == "flat" {
-        return Ok(Terrain::Flat);
-    }
-    Terrain::load(&yardstick().join(format!("{name}.toml"))).map_err(|error| error.to_string())
 }
 
 /// Where the machine is set down: position in m, yaw, roll and pitch in rad.

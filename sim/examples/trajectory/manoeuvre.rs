@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use xt28_machine::PerWheel;
-use xt28_sim::{Actuation, Plant, VehicleState};
+use xt28_sim::{Actuation, Plant, Terrain, VehicleState};
 
 /// Knots `[time in s, value]`: linear in between, held before the first and after the last.
 type Knots = Vec<[f64; 2]>;
@@ -59,6 +59,17 @@ pub(crate) struct Sample {
 #[must_use]
 pub(crate) fn yardstick() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../tools/yardstick")
+}
+
+/// Level ground, or a terrain file of the yardstick.
+///
+/// # Errors
+/// When the file cannot be read or is no terrain.
+pub(crate) fn terrain(name: &str) -> Result<Terrain, String> {
+    if name == "flat" {
+        return Ok(Terrain::Flat);
+    }
+    Terrain::load(&yardstick().join(format!("{name}.toml"))).map_err(|error| error.to_string())
 }
 
 impl Manoeuvre {

@@ -8,8 +8,6 @@ use super::programs::{Job, Programs};
 use super::trajectory::KINDS;
 use crate::workspace::Outcome;
 
-/// Manoeuvres whose recording the plant's tests are held to.
-const RECORDED: [&str; 3] = ["settle", "straight", "turn"];
 /// Steps per second of a recording: fine enough that the step does not show.
 const RECORDED_HZ: u32 = 2000;
 /// MuJoCo lets a wheel creep under a side load in proportion to it. This makes the creep a thousand
@@ -65,13 +63,11 @@ fn table(
 /// When MuJoCo cannot be run or a file not be written.
 pub(crate) fn record(programs: &Programs) -> Outcome<()> {
     for (manoeuvre, terrain) in manoeuvres(programs)? {
-        if RECORDED.contains(&manoeuvre.as_str()) {
-            let (rate_hz, mujoco) = (RECORDED_HZ, &[STIFF_FRICTION.to_owned()]);
-            let job = Job { manoeuvre: &manoeuvre, terrain: &terrain, rate_hz, mujoco };
-            let path = programs.recorded(&manoeuvre);
-            fs::write(&path, programs.run(Engine::MujocoElliptic, &job)?.text)?;
-            println!("{}", path.display());
-        }
+        let (rate_hz, mujoco) = (RECORDED_HZ, &[STIFF_FRICTION.to_owned()]);
+        let job = Job { manoeuvre: &manoeuvre, terrain: &terrain, rate_hz, mujoco };
+        let path = programs.recorded(&manoeuvre);
+        fs::write(&path, programs.run(Engine::MujocoElliptic, &job)?.text)?;
+        println!("{}", path.display());
     }
     Ok(())
 }

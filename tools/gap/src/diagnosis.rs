@@ -46,7 +46,7 @@ pub use generator::{Generator, Residual, share_resistance};
 pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
-pub use judgement::Findings;
+pub use judgement::{Chances, Findings, Grounds, Scales};
 pub(crate) use knob::SHIFT_MAX;
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub use next_drive::{Manoeuvre, next_drive, untested_drive};

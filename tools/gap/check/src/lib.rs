@@ -8,6 +8,7 @@
 //! | plain rules on the same logs | [`BASELINES`] |
 //! | each effect withheld from the catalogue in turn | [`sweep`] |
 //! | scores with their intervals, the reliability curve | [`scores`], [`Report`] |
+//! | which scales would have made better probabilities | [`suited`] |
 #![forbid(unsafe_code)]
 
 mod baselines;
@@ -30,8 +31,8 @@ pub use examination::{Clock, Examination, Examined, Judged, Options};
 pub use reply::{Named, Reply};
 pub use report::Report;
 pub use score::{
-    Bin, Score, Scores, Statement, calibration_error, curve, error_by_chance, reliability, scores,
-    statements,
+    Bin, Outcome, Score, Scores, Statement, Suited, calibration_error, curve, error_by_chance,
+    reliability, scores, statements, suited,
 };
 pub use source::{MIX, Source};
 pub use sweep::{Withheld, one_of_each, sweep, sweep_scores};

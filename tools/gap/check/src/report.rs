@@ -10,7 +10,7 @@ use crate::coverage::covered;
 use crate::examination::{Examination, Judged};
 use crate::reply::Reply;
 use crate::score::{
-    Bin, Score, Scores, Statement, error_by_chance, reliability, scores, statements,
+    Bin, Score, Scores, Statement, Suited, error_by_chance, reliability, scores, statements, suited,
 };
 use crate::sweep::{Withheld, sweep_scores};
 use crate::truth::{Kind, Truth};
@@ -107,6 +107,7 @@ impl Report {
              for shares, a bootstrap over cases for the rest\n"
         )?;
         self.write_reliability(to)?;
+        self.write_scales(to)?;
         self.write_wrong(to)?;
         if self.sweep.is_empty() { Ok(()) } else { self.write_sweep(to) }
     }
@@ -156,6 +157,24 @@ impl Report {
         )
     }
 
+    /// The scales that would suit these cases best, beside those in use.
+    fn scales(&self) -> Vec<Suited> {
+        let outcome = |case: &Judged| (case.examined.diagnosis.grounds, case.truth.kind);
+        suited(&self.cases.iter().map(outcome).collect::<Vec<_>>())
+    }
+
+    fn write_scales(&self, to: &mut String) -> std::fmt::Result {
+        let scales = self.scales();
+        if scales.is_empty() {
+            return Ok(());
+        }
+        writeln!(to, "{:<36} {:<10} suits these best", "scale of probabilities", "in use")?;
+        for Suited { name, in_use, best } in scales {
+            writeln!(to, "{name:<36} {in_use:<10} {}", cell(&best))?;
+        }
+        writeln!(to)
+    }
+
     fn write_wrong(&self, to: &mut String) -> std::fmt::Result {
         let wrong: Vec<_> = self.cases.iter().filter(|case| !is_right(case)).collect();
         writeln!(to, "{} of {} cases came out wrong", wrong.len(), self.cases.len())?;
@@ -195,6 +214,7 @@ impl Report {
             "own": table(&self.own),
             "reliability": self.reliability(),
             "calibration_error_by_chance": error_by_chance(&self.statements),
+            "scales": self.scales(),
             "cases": cases.collect::<Vec<_>>(),
             "withheld": self.sweep,
         })

@@ -3,6 +3,7 @@
 mod calibration;
 mod curve;
 mod rate;
+mod suited;
 
 use calibration::scope_statement;
 pub use calibration::{
@@ -11,6 +12,7 @@ pub use calibration::{
 pub use curve::curve;
 pub use rate::Score;
 pub(crate) use rate::average;
+pub use suited::{Outcome, Suited, suited};
 
 use xt28_gap::diagnosis::Verdict;
 

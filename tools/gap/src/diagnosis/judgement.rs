@@ -11,6 +11,7 @@ mod causes;
 mod notes;
 mod objection;
 mod places;
+mod scales;
 
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
@@ -22,11 +23,8 @@ use beginning::is_told;
 use causes::causes;
 use notes::notes;
 use places::{places, unexplained};
+pub use scales::{Chances, Grounds, Scales};
 
-/// Evidence at which something and nothing are as likely, nats, and how sharply that turns.
-const SOMETHING: [f64; 2] = [18.0, 4.0];
-/// What may be left over, in floors, where something and unknown are as likely, and how sharply.
-const UNKNOWN: [f64; 2] = [1.2, 10.0];
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
@@ -79,6 +77,12 @@ impl Findings {
         Some((loudest.times, loudest.why))
     }
 
+    /// What a verdict on them rests on.
+    #[must_use]
+    pub fn grounds(&self) -> Grounds {
+        Grounds { evidence_nats: self.evidence(), left_over: self.left_over() }
+    }
+
     /// The best pair, or the best cause where one is enough.
     fn believed(&self) -> impl Iterator<Item = &Candidate> {
         let alone = self.single.first().filter(|_| self.pair.is_empty());
@@ -94,21 +98,13 @@ impl Findings {
 
 /// The verdict on `findings`.
 pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
-    let something = turned(findings.evidence(), SOMETHING);
-    let unknown = turned(findings.left_over(), UNKNOWN);
-    let any = 1.0 - (1.0 - something) * (1.0 - unknown);
-    let known = something * (1.0 - unknown);
-    let mut causes = causes(findings, known);
+    let grounds = findings.grounds();
+    let chances = Scales::IN_USE.chances(grounds);
+    let mut causes = causes(findings, chances.known);
     for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
         cause.begins = None;
     }
-    let verdict = if any < 0.5 {
-        Verdict::None
-    } else if unknown > 0.5 {
-        Verdict::Unknown
-    } else {
-        Verdict::Effect
-    };
+    let verdict = chances.verdict();
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
     let held_speak = verdict == Verdict::Unknown && findings.objection().is_held;
@@ -121,8 +117,10 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let mut diagnosis = Diagnosis {
         unexplained: objection.map(|at| unexplained(at, &places)),
         places,
-        probability_none: 1.0 - any,
-        probability_unknown: any - known,
+        probability_none: chances.none,
+        probability_unknown: chances.unknown,
+        probability_unseen: chances.unseen,
+        grounds,
         held_out_runs: held_out_runs(inquiry),
         not_testable: not_shown(inquiry, |run| run.fit),
         notes: notes(inquiry, findings, verdict),
@@ -151,12 +149,6 @@ fn log_faults(inquiry: &Inquiry) -> Vec<String> {
 fn held_out_runs(inquiry: &Inquiry) -> Vec<String> {
     let held = inquiry.runs.iter().filter(|run| !run.fit);
     held.map(FieldRun::file).collect()
-}
-
-/// Probability that `value` stands for: a half at the first of `scale`, and as sharp as the second says.
-fn turned(value: f64, [half, sharp]: [f64; 2]) -> f64 {
-    let value = value.max(0.0).powf(sharp);
-    value / (value + half.powf(sharp))
 }
 
 #[cfg(test)]
@@ -315,6 +307,7 @@ mod tests {
         let all = vec![candidate("arm-delay", 30.0), candidate("payload", 25.0)];
         let d = judged(9.0, 4.0, all);
         let known: f64 = d.causes.iter().map(|cause| cause.probability).sum();
-        assert!((known + d.probability_none + d.probability_unknown - 1.0).abs() < 1e-9);
+        let others = [d.probability_none, d.probability_unseen, d.probability_unknown];
+        assert!((known + others.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     }
 }

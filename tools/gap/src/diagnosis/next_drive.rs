@@ -99,7 +99,9 @@ fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
         return Vec::new();
     };
     let wheels = leader.scopes.first().map_or(1.0, |(_, share)| *share);
-    if leader.probability * wheels > SURE || diagnosis.probability_none > SURE {
+    // What shows in nothing is no rival: no drive is known to show it.
+    let none = diagnosis.probability_none + diagnosis.probability_unseen;
+    if leader.probability * wheels > SURE || none > SURE {
         return Vec::new();
     }
     let mut base = inquiry.believed.clone();

@@ -3,6 +3,8 @@
 use serde::{Serialize, Serializer};
 use xt28_sim::effects::{Block, Effect, Parameter, Scope};
 
+use super::judgement::Grounds;
+
 /// The whole answer to one machine's logs. Serialises to the form of `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Diagnosis {
@@ -23,6 +25,10 @@ pub struct Diagnosis {
     pub probability_none: f64,
     /// Probability that what is wrong is not in the catalogue.
     pub probability_unknown: f64,
+    /// Probability that an effect of the catalogue is there of which these logs show nothing.
+    pub probability_unseen: f64,
+    /// What these rest on.
+    pub grounds: Grounds,
     /// All causes stood by, at once; `null` in JSON without any.
     pub together: Option<Together>,
     /// Runs that were not fitted, by file name; none where all were.
@@ -66,6 +72,8 @@ impl Diagnosis {
             causes,
             probability_none: 0.0,
             probability_unknown: 0.0,
+            probability_unseen: 0.0,
+            grounds: Grounds { evidence_nats: 0.0, left_over: 0.0 },
             together: None,
             held_out_runs: Vec::new(),
             looked_ahead: false,

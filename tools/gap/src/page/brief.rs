@@ -6,12 +6,12 @@ use xt28_machine::Machine;
 
 use super::ahead::purpose;
 use super::caption::{small_gaps, unshrunk};
-use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN};
+use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN, UNSEEN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
 use super::svg::{Anchor, Svg, escape};
 use super::words::{estimate, judged_on, on, percent, shrinks};
-use crate::diagnosis::{Cause, Details, Diagnosis, ShareOf, Verdict};
+use crate::diagnosis::{Cause, Details, Diagnosis, ShareOf, Verdict, WORTH_TELLING};
 
 /// The page's body.
 pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
@@ -60,10 +60,15 @@ fn sureness(diagnosis: &Diagnosis) -> String {
             parts.push((format!("{one} alone"), first - both, ALONE));
         }
     }
-    let rest = 1.0 - first - diagnosis.probability_none - diagnosis.probability_unknown;
-    parts.push(("other causes".to_owned(), rest.max(0.0), OTHER));
-    parts.push(("nothing beyond tolerances".to_owned(), diagnosis.probability_none, NOTHING));
-    parts.push(("not in the catalogue".to_owned(), diagnosis.probability_unknown, UNKNOWN));
+    let [none, unknown] = [diagnosis.probability_none, diagnosis.probability_unknown];
+    let unseen = diagnosis.probability_unseen;
+    let rest = (1.0 - first - none - unknown - unseen).max(0.0);
+    parts.push(("other causes".to_owned(), rest, OTHER));
+    parts.push(("nothing beyond tolerances".to_owned(), none, NOTHING));
+    if unseen >= WORTH_TELLING {
+        parts.push(("an effect that does not show".to_owned(), unseen, UNSEEN));
+    }
+    parts.push(("not in the catalogue".to_owned(), unknown, UNKNOWN));
     let total: f64 = parts.iter().map(|(_, share, _)| share).sum();
     let rows: f64 = parts.iter().map(|_| 18.0).sum();
     let mut svg = Svg::new(width, height + rows + 8.0);

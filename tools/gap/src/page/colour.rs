@@ -14,6 +14,8 @@ pub(super) const OTHER: &str = "#56b4e9";
 pub(super) const UNKNOWN: &str = "#cc79a7";
 /// Nothing: green.
 pub(super) const NOTHING: &str = "#009e73";
+/// An effect that shows in nothing: yellow.
+pub(super) const UNSEEN: &str = "#f0e442";
 /// Where there is nothing to show.
 pub(super) const BLANK: &str = "#f4f4f2";
 

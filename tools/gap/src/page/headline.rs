@@ -104,9 +104,10 @@ fn undecided(diagnosis: &Diagnosis) -> String {
     let likeliest: Vec<String> = diagnosis.causes.iter().take(2).map(cause).collect();
     format!(
         "Something parts from the simulator, and these logs do not tell what: {}, nothing beyond ordinary \
-         tolerances (probability {}).",
+         tolerances (probability {}), something that no effect of the catalogue explains (probability {}).",
         likeliest.join(", "),
-        percent(diagnosis.probability_none)
+        percent(diagnosis.probability_none),
+        percent(diagnosis.probability_unknown)
     )
 }
 

@@ -4,7 +4,9 @@ use core::fmt::Write as _;
 
 use super::caption::{gap_over_noise, how_to_read_shares, share_of, small_gaps};
 use super::svg::escape;
-use super::words::{by_share, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks};
+use super::words::{
+    by_share, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks, without_a_name,
+};
 use crate::diagnosis::{Cause, Details, Diagnosis, Place, Shrink};
 
 /// Causes listed.
@@ -65,13 +67,13 @@ pub(super) fn causes(diagnosis: &Diagnosis) -> String {
             cause.shrink.as_ref().map_or_else(|| "–".to_owned(), shrink),
         );
     }
-    let _ = write!(
-        rows,
-        "<tr><td class=\"number\">{}</td><td colspan=\"5\">nothing beyond ordinary tolerances</td></tr>\
-         <tr><td class=\"number\">{}</td><td colspan=\"5\">something that is not in the catalogue</td></tr>",
-        percent(diagnosis.probability_none),
-        percent(diagnosis.probability_unknown)
-    );
+    for (probability, answer) in without_a_name(diagnosis) {
+        let sure = percent(probability);
+        let _ = write!(
+            rows,
+            "<tr><td class=\"number\">{sure}</td><td colspan=\"5\">{answer}</td></tr>"
+        );
+    }
     let is_told = diagnosis.causes.iter().take(CAUSES).any(|cause| cause.shrink.is_some());
     let fitted = is_told && diagnosis.held_out_runs.is_empty();
     let on = if fitted { ", on the runs that were fitted" } else { "" };

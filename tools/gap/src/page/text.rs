@@ -5,7 +5,9 @@ use core::fmt::Write as _;
 use super::ahead::{after_that, how_well, purpose};
 use super::caption::{how_to_read_shares, share_of, small_gaps};
 use super::headline;
-use super::words::{elsewhere, estimate, is_elsewhere, judged_on, percent, short, shrink};
+use super::words::{
+    elsewhere, estimate, is_elsewhere, judged_on, percent, short, shrink, without_a_name,
+};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -124,14 +126,7 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
             let _ = writeln!(out, "{:>11}  shrinks the gap by {}{on}", "", shrink(by));
         }
     }
-    let _ = writeln!(
-        out,
-        "{:>11}  nothing beyond ordinary tolerances",
-        percent(diagnosis.probability_none)
-    );
-    let _ = writeln!(
-        out,
-        "{:>11}  something that is not in the catalogue",
-        percent(diagnosis.probability_unknown)
-    );
+    for (probability, answer) in without_a_name(diagnosis) {
+        let _ = writeln!(out, "{:>11}  {answer}", percent(probability));
+    }
 }

@@ -3,10 +3,23 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Estimate, Shrink, WORTH_TELLING};
+use crate::diagnosis::{Cause, Diagnosis, Estimate, Shrink, WORTH_TELLING};
 
 /// Wheels that a cause may be at of which each is told.
 const ELSEWHERE: usize = 4;
+
+/// The answers beside the causes, each with its probability.
+pub(super) fn without_a_name(diagnosis: &Diagnosis) -> impl Iterator<Item = (f64, &'static str)> {
+    let unseen = diagnosis.probability_unseen;
+    [
+        Some((diagnosis.probability_none, "nothing beyond ordinary tolerances")),
+        Some((unseen, "an effect of which these logs show nothing"))
+            .filter(|_| unseen >= WORTH_TELLING),
+        Some((diagnosis.probability_unknown, "something that is not in the catalogue")),
+    ]
+    .into_iter()
+    .flatten()
+}
 
 /// On which runs a shrink was told, after "the gap shrinks on".
 pub(super) const fn judged_on(held_out_runs: &[String]) -> &'static str {

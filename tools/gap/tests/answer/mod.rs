@@ -2,8 +2,8 @@
 
 use xt28_gap::FieldLog;
 use xt28_gap::diagnosis::{
-    Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Inquiry, Next, NotTestable, Place,
-    ShareOf, Shrink, Spot, Together, Verdict,
+    Cause, Details, Diagnosis, Drive, Estimate, FieldRun, Grounds, Inquiry, Next, NotTestable,
+    Place, ShareOf, Shrink, Spot, Together, Verdict,
 };
 use xt28_gap::page::{Subject, html};
 use xt28_machine::Machine;
@@ -65,6 +65,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         causes: vec![cause("arm-delay", 0.93), cause("leakage-drift", 0.71)],
         probability_none: 0.01,
         probability_unknown: 0.02,
+        probability_unseen: 0.0,
+        grounds: Grounds { evidence_nats: 900.0, left_over: 0.7 },
         together: Some(Together {
             effects: vec!["arm-delay", "leakage-drift"],
             shrink: shrink(),

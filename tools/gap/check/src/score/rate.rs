@@ -45,16 +45,16 @@ impl Score {
         if cases.is_empty() {
             return Self { value: f64::NAN, interval: [f64::NAN; 2], count: 0 };
         }
-        let mut random = ChaCha8Rng::seed_from_u64(BOOTSTRAP_SEED);
-        let mut drawn: Vec<f64> = (0..RESAMPLES)
-            .map(|_| {
-                let again = cases.iter().map(|_| cases[random.random_range(0..cases.len())]);
-                statistic(&again.collect::<Vec<T>>())
-            })
-            .collect();
+        let mut drawn = drawn_again(cases, RESAMPLES, &statistic);
+        Self::drawn(statistic(cases), &mut drawn, cases.len())
+    }
+
+    /// `value` of so many cases, which was `drawn` again and again from cases drawn again.
+    #[must_use]
+    pub(super) fn drawn(value: f64, drawn: &mut [f64], count: usize) -> Self {
         drawn.sort_by(f64::total_cmp);
-        let interval = [drawn[RESAMPLES / 40], drawn[RESAMPLES - 1 - RESAMPLES / 40]];
-        Self { value: statistic(cases), interval, count: cases.len() }
+        let tail = drawn.len() / 40;
+        Self { value, interval: [drawn[tail], drawn[drawn.len() - 1 - tail]], count }
     }
 
     /// What chance alone raises, an error of calibration for one: a function of what all cases say together,
@@ -79,6 +79,20 @@ impl Score {
     pub const fn unsaid() -> Self {
         Self { value: f64::NAN, interval: [f64::NAN; 2], count: 0 }
     }
+}
+
+/// `statistic` of as many cases drawn from `cases`, `draws` times.
+pub(super) fn drawn_again<T: Copy, R>(
+    cases: &[T],
+    draws: usize,
+    statistic: impl Fn(&[T]) -> R,
+) -> Vec<R> {
+    let mut random = ChaCha8Rng::seed_from_u64(BOOTSTRAP_SEED);
+    let draw = |_| {
+        let again = cases.iter().map(|_| cases[random.random_range(0..cases.len())]);
+        statistic(&again.collect::<Vec<T>>())
+    };
+    (0..draws).map(draw).collect()
 }
 
 /// Mean; `NaN` of nothing.

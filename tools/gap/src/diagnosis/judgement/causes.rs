@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use xt28_sim::effects::Scope;
 
-use super::{Findings, turned};
+use super::Findings;
+use super::scales::turned;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::verdict::{Beginning, Cause, Estimate};
 
@@ -29,8 +30,11 @@ pub(super) fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
         None => vec![findings.single.iter().collect()],
         Some([first, _]) => {
             let name = first.fit.hypothesis.effect;
+            // The first may have moved beside the second: it is listed as it is there.
+            let at = first.fit.hypothesis.scope;
             let own = findings.single.iter().filter(|c| c.fit.hypothesis.effect == name);
-            let firsts = std::iter::once(first).chain(own.skip(1)).collect();
+            let elsewhere = own.filter(|c| c.fit.hypothesis.scope != at);
+            let firsts = std::iter::once(first).chain(elsewhere).collect();
             vec![firsts, findings.pair.iter().map(|[_, second]| second).collect()]
         }
     };
@@ -50,7 +54,8 @@ fn is_second(second: &Candidate, first_nats: f64) -> f64 {
     turned(second.second_score(), [SECOND[0] + shared, SECOND[1]])
 }
 
-/// One cause for each effect, at its best scope, with the probability of all its scopes.
+/// One cause for each effect, at its best scope, with the probability of all its scopes: `known` is shared
+/// among them.
 fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
     let best = rank.first().map_or(0.0, |best| best.score());
     let temperature = 1.0 + TEMPERATURE_SHARE * best.max(0.0);
@@ -118,6 +123,23 @@ mod tests {
             panic!("{:?}", cause.scopes)
         };
         assert!(all > left && left > 0.4 && (all + left - 1.0).abs() < 1e-6, "{all} {left}");
+    }
+
+    #[test]
+    fn a_first_cause_that_moved_beside_the_second_is_at_each_scope_once() {
+        let of = |scope, score| Candidate::made_up("rolling-resistance", scope, score);
+        let left = Scope::Side(Side::Left);
+        let second = Candidate::made_up("payload", Scope::All, 80.0);
+        let findings = Findings {
+            single: vec![of(Scope::All, 100.0), of(left, 99.0)],
+            pair: vec![[of(left, 99.0), second]],
+            ..Findings::default()
+        };
+        let causes = causes(&findings, 1.0);
+        let first = causes.iter().find(|cause| cause.effect.name == "rolling-resistance").unwrap();
+        let mut scopes: Vec<String> = first.scopes.iter().map(|(s, _)| s.to_string()).collect();
+        scopes.sort();
+        assert_eq!(scopes, ["all", "left"]);
     }
 
     #[test]

@@ -97,6 +97,42 @@ fn a_signal_that_was_not_recorded_is_named_with_its_message() {
 }
 
 #[test]
+fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
+    let id = format!(" {}#", id("PosFront"));
+    let heard = |from_s: f64, to_s: f64| {
+        let (_folder, log) = changed(|at_s, rest| {
+            let is_there = (from_s..to_s).contains(&at_s) || !rest.contains(&id);
+            is_there.then(|| (at_s, rest.to_owned()))
+        });
+        let output = xt28(&["gap", "where", &log, "--dbc", DBC]);
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, talk) = heard(0.0, 8.0);
+    assert_ne!(status, Some(2), "{talk}");
+    assert!(talk.contains("stroke.FR stops at 8.0 s of a log of 10.0 s"), "{talk}");
+    assert!(talk.contains("only 0.0 to 8.0 s of it are looked at"), "{talk}");
+    let (_, talk) = heard(2.0, 20.0);
+    assert!(talk.contains(" begins at 2.0 s of a log of 10.0 s"), "{talk}");
+    let (status, talk) = heard(3.0, 7.0);
+    assert_eq!(status, Some(2), "{talk}");
+    assert!(talk.contains("4.0 s long, and a diagnosis needs 5 s"), "{talk}");
+}
+
+#[test]
+fn pressures_on_another_scale_than_loads_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let dbc = path(folder.path(), "bar.dbc");
+    let text = fs::read_to_string(DBC).unwrap();
+    let wrong = text.replace("(1,0) [0|65535] \"kPa\"", "(0.1,0) [0|65535] \"kPa\"");
+    assert_ne!(wrong, text, "there are pressures");
+    fs::write(&dbc, wrong).unwrap();
+    let output = xt28(&["gap", "where", &log(), "--dbc", &dbc]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("0.10 on FR") && talk.contains("check unit and factor"), "{talk}");
+}
+
+#[test]
 fn a_log_without_chamber_pressures_is_taken_with_a_word() {
     let pressures = ["PressFront", "PressMid", "PressRear"].map(|name| format!(" {}#", id(name)));
     let (_folder, log) = changed(|at_s, rest| {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::Swap;
+use crate::diagnosis::{LoadScale, Swap};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -236,6 +236,14 @@ pub enum GapError {
         possible: [f64; 2],
         /// SI unit.
         unit: &'static str,
+    },
+    /// The chambers' pressures and the cylinders' loads are not on one scale.
+    #[error(
+        "the chambers' pressures do not make the cylinders' loads: {scale} times what the frames tell; check unit and factor of both in DBC and mapping"
+    )]
+    LoadScale {
+        /// Where, and by how much.
+        scale: LoadScale,
     },
     /// Commands and readings are not of the same wheels.
     #[error(

@@ -56,6 +56,14 @@ impl FieldLog {
         intake.finish(&name, decoder)
     }
 
+    /// What it holds between two instants, with the first of them as zero; what is wrong with the whole of
+    /// it stays said.
+    #[must_use]
+    pub fn within(self, span_s: [f64; 2]) -> Self {
+        let series = self.series.iter().map(|(channel, all)| (*channel, all.within(span_s)));
+        Self { series: series.collect(), duration_s: span_s[1] - span_s[0], ..self }
+    }
+
     /// Reads a log from `input`; `name` is its name in errors.
     ///
     /// # Errors

@@ -117,7 +117,28 @@ impl Mapping {
             self.sources.insert(channel, source);
             self.named.insert(channel, line);
         }
-        Ok(())
+        match self.read_twice() {
+            Some((line, problem)) => Err(refuse((line, problem))),
+            None => Ok(()),
+        }
+    }
+
+    /// Two channels that one signal would be read for, and the line that makes it so: one arm would be taken
+    /// for another without a word.
+    fn read_twice(&self) -> Option<(usize, String)> {
+        let mut readers: BTreeMap<(&str, &str), Channel> = BTreeMap::new();
+        for (channel, source) in self.iter() {
+            let signal = (source.message.as_str(), source.signal.as_str());
+            let Some(other) = readers.insert(signal, channel) else { continue };
+            let lines = [channel, other].map(|channel| self.named.get(&channel).copied());
+            let line = lines.into_iter().flatten().max().unwrap_or_default();
+            let (message, signal) = signal;
+            let problem = format!(
+                "both {other} and {channel} would be read from {message}.{signal}; give one of them another"
+            );
+            return Some((line, problem));
+        }
+        None
     }
 }
 
@@ -184,6 +205,9 @@ mod tests {
         assert!(form.starts_with("m.toml:2: `PosFront` is not of the form"), "{form}");
         let key = refused("[signal]\n");
         assert!(key.starts_with("m.toml:1: unknown field `signal`"), "{key}");
+        let twice = refused("[signals]\n\n\"stroke.FR\" = \"PosFront.FL\"\n");
+        let both = "m.toml:3: both stroke.FR and stroke.FL would be read from PosFront.FL";
+        assert!(twice.starts_with(both), "{twice}");
         let scale = refused("[signals]\n\"stroke.FR\" = { signal = \"A.B\", scale = 0 }\n");
         assert!(scale.contains("scale = 0"), "{scale}");
     }

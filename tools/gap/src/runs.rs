@@ -1,5 +1,6 @@
 //! The logs of one machine that belong together: each read once, with the ground it was driven on.
 
+mod attended;
 mod choice;
 mod soundness;
 
@@ -8,9 +9,10 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::{FieldRun, Signals, swapped_wheels};
+use crate::diagnosis::{FieldRun, Signals, load_scale, swapped_wheels};
 use crate::{About, Decoder, FieldLog, GapError};
 
+use attended::attended;
 pub use choice::{Choice, Use};
 
 /// Logs of one machine, in the order given, no two the same.
@@ -76,18 +78,20 @@ impl RunSet {
                 (None, Some(_)) => About::terrain_of(known.about.unwrap_or(path), path)?,
                 (None, None) => Terrain::Flat,
             };
-            let log = FieldLog::load(path, decoder, accept_cut)?;
+            let (log, note) = attended(FieldLog::load(path, decoder, accept_cut)?);
             soundness::check(&log, decoder)?;
-            Ok(KnownRun {
+            let run = KnownRun {
                 file: file_name(path),
                 scenario: told.and_then(|run| run.scenario.clone()),
                 advised: told.map(|run| run.fit),
                 terrain: ground,
                 log,
-            })
+            };
+            Ok((run, note))
         };
-        let runs: Vec<KnownRun> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
-        let mut notes = Vec::new();
+        let read: Vec<_> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
+        let (runs, left_out): (Vec<KnownRun>, Vec<Option<String>>) = read.into_iter().unzip();
+        let mut notes: Vec<String> = left_out.into_iter().flatten().collect();
         if one_ground.is_none() && about.is_none() {
             notes.push(
                 "No word on the ground: every run is taken as driven on level ground.".to_owned(),
@@ -127,8 +131,8 @@ impl RunSet {
     /// look swapped.
     ///
     /// # Errors
-    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::WheelOrder`] the wheels that
-    /// look swapped.
+    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::LoadScale`] the wheels whose pressures
+    /// and loads do not belong together, [`GapError::WheelOrder`] those that look swapped.
     pub fn into_field_runs(
         self,
         choice: &Choice,
@@ -139,6 +143,9 @@ impl RunSet {
             .map(|(run, used)| FieldRun::new(run.log, run.terrain, *used == Use::Fit))
             .collect::<Result<_, _>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
+        if let Some(scale) = load_scale(&signals) {
+            return Err(GapError::LoadScale { scale });
+        }
         match swapped_wheels(&signals) {
             Some(swap) if !any_order => Err(GapError::WheelOrder { swap }),
             _ => Ok(runs),

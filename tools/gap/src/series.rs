@@ -51,6 +51,16 @@ impl Series {
         self.at_s.last().copied()
     }
 
+    /// What is in force between two instants, with the first of them as zero.
+    #[must_use]
+    pub fn within(&self, [from_s, to_s]: [f64; 2]) -> Self {
+        let held = self.at(from_s).map(|value| (from_s, value));
+        let inside = self.iter().filter(|(at_s, _)| *at_s > from_s && *at_s <= to_s);
+        let (at_s, value) =
+            held.into_iter().chain(inside).map(|(at_s, v)| (at_s - from_s, v)).unzip();
+        Self { at_s, value }
+    }
+
     /// The same with every value multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {

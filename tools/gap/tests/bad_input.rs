@@ -21,9 +21,31 @@ fn lacks(all: &BTreeMap<Channel, Series>, effect: &str) -> Option<(String, Strin
 
 /// A machine that stands and logs its arms' loads alone.
 fn carrying() -> BTreeMap<Channel, Series> {
-    let mut all = standing();
+    without_pressures(standing())
+}
+
+fn without_pressures(mut all: BTreeMap<Channel, Series>) -> BTreeMap<Channel, Series> {
     all.retain(|channel, _| !matches!(channel, Channel::BorePressure(_) | Channel::RodPressure(_)));
     all
+}
+
+#[test]
+fn arms_of_which_a_chamber_reads_empty_are_not_tested() {
+    let (lacks, with) = lacks(&swinging(), "valve-lag").unwrap();
+    assert_eq!(
+        lacks,
+        "the stroke of FR FL MR ML BR BL could be judged for less than 2 s, as a chamber reads empty"
+    );
+    assert_eq!(with, "arm-step");
+}
+
+#[test]
+fn a_controller_is_tested_in_manual_position_alone() {
+    let mut all = without_pressures(swinging());
+    assert_eq!(lacks(&all, "arm-gain"), None);
+    all.insert(Channel::ArmMode, series(|_| 0.0));
+    let (lacks, _) = lacks(&all, "arm-gain").unwrap();
+    assert!(lacks.contains("could be judged for less than 2 s in manual position"), "{lacks}");
 }
 
 #[test]
@@ -66,7 +88,7 @@ fn ground_that_is_not_level_hides_what_a_machine_stands_and_travels_by() {
 
 #[test]
 fn arms_that_stand_while_others_move_are_named() {
-    let mut all = swinging();
+    let mut all = without_pressures(swinging());
     assert_eq!(lacks(&all, "arm-delay"), None);
     for w in [Wheel::Mr, Wheel::Ml] {
         all.insert(Channel::Stroke(w), series(|_| 0.17));

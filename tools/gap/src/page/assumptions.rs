@@ -81,8 +81,8 @@ pub(super) fn faults(details: &Details) -> String {
     }
     if items.is_empty() {
         items.push(
-            "None: no log is cut, no clock steps, no cyclic message is away for more than one and a half \
-             of its periods, and no frame has another length or a value out of its range than the DBC \
+            "None: no log is cut, no clock steps, no message whose period the DBC tells is away for more than \
+             one and a half of that, and no frame has another length or a value out of its range than the DBC \
              says. Frames that are late by less are no fault of a log: the bus is a block like others."
                 .to_owned(),
         );

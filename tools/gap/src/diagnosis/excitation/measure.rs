@@ -7,7 +7,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Scope;
 
 use super::super::floor::Signal;
-use super::super::generator::Generator;
+use super::super::generator::{Generator, Residual};
 use super::super::signals::{DT_S, Samples, Signals};
 
 /// Time between two samples of a residual, s.
@@ -24,7 +24,7 @@ const STANDS_RAD_S: f64 = 0.05;
 /// Rolling radius for a distance, m; near enough to say whether there was one.
 const RADIUS_M: f64 = 0.74;
 
-/// What one arm did, the most over all runs.
+/// What one arm did, the most over all runs, and for how long in all it could be judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct ArmUse {
     /// Range of its stroke, m.
@@ -39,6 +39,10 @@ pub(super) struct ArmUse {
     pub(super) holds_s: f64,
     /// Longest time without load and the valve shut, s.
     pub(super) unloaded_s: f64,
+    /// For how long in all its stroke could be judged, s: not while a chamber is drained.
+    pub(super) judged_s: f64,
+    /// The same of what its controller does: in manual position alone.
+    pub(super) controlled_s: f64,
 }
 
 /// What the machine did, the most over all runs.
@@ -70,7 +74,7 @@ impl Excitation {
     ) -> Self {
         let most = |of: &dyn Fn(&Signals) -> f64| runs.clone().map(of).fold(0.0, f64::max);
         Self {
-            arms: PerWheel::from_fn(|wheel| arm(runs.clone(), wheel)),
+            arms: PerWheel::from_fn(|wheel| arm(runs.clone(), machine, wheel)),
             openings: most(&openings),
             steers_rad: most(&|s| {
                 let turning = |&i: &usize| s.mean_wheel_speed_rad_s(i).abs() > STANDS_RAD_S;
@@ -107,11 +111,23 @@ impl ArmUse {
         load_range_n: f64::INFINITY,
         holds_s: f64::INFINITY,
         unloaded_s: f64::INFINITY,
+        judged_s: f64::INFINITY,
+        controlled_s: f64::INFINITY,
     };
 }
 
-/// For how long the signals that watch the whole machine could be judged, s.
+/// For how long each signal of `generator` could be judged in a run, s.
 #[allow(clippy::cast_precision_loss)]
+fn judged_by(generator: Generator, s: &Signals, machine: &Machine) -> Vec<(Signal, f64)> {
+    let residuals = generator.residuals(s, machine, &Effects::default());
+    let judged = |residual: Residual| {
+        let count = residual.values.iter().filter(|value| value.is_finite()).count();
+        (residual.signal, count as f64 * STEP_S)
+    };
+    residuals.into_iter().map(judged).collect()
+}
+
+/// For how long the signals that watch the whole machine could be judged, s.
 fn judged_s<'a>(
     runs: impl Iterator<Item = &'a Signals>,
     machine: &Machine,
@@ -119,16 +135,15 @@ fn judged_s<'a>(
     let mut all = BTreeMap::new();
     for s in runs {
         for generator in [Generator::Drive, Generator::Stance, Generator::Travel] {
-            for residual in generator.residuals(s, machine, &Effects::default()) {
-                let judged = residual.values.iter().filter(|value| value.is_finite()).count();
-                *all.entry(residual.signal).or_insert(0.0) += judged as f64 * STEP_S;
+            for (signal, judged_s) in judged_by(generator, s, machine) {
+                *all.entry(signal).or_insert(0.0) += judged_s;
             }
         }
     }
     all
 }
 
-fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, wheel: Wheel) -> ArmUse {
+fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, machine: &Machine, wheel: Wheel) -> ArmUse {
     let mut all = ArmUse::default();
     for s in runs {
         let (stroke, opening) = (&s.stroke_m[wheel], &s.opening[wheel]);
@@ -144,6 +159,9 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, wheel: Wheel) -> ArmUse {
             s.throttle[i].abs() < LET_GO && s.mean_wheel_speed_rad_s(i).abs() < STANDS_RAD_S
         };
         let shut = |i: usize| opening[i].abs() < CLOSED;
+        let judged_s = |generator: Generator| -> f64 {
+            judged_by(generator, s, machine).into_iter().map(|(_, judged_s)| judged_s).sum()
+        };
         let one = ArmUse {
             moves_m: range(stroke.iter().copied()),
             turns_m: f64::min(out_m, in_m),
@@ -151,6 +169,8 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, wheel: Wheel) -> ArmUse {
             load_range_n: range(load.iter().copied()),
             holds_s: longest_s(s.len, |i| shut(i) && load[i] > UNLOADED_N),
             unloaded_s: longest_s(s.len, |i| shut(i) && load[i] < UNLOADED_N),
+            judged_s: judged_s(Generator::ArmStroke(wheel)),
+            controlled_s: judged_s(Generator::ArmEcu(wheel)),
         };
         all = ArmUse {
             moves_m: all.moves_m.max(one.moves_m),
@@ -159,6 +179,8 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, wheel: Wheel) -> ArmUse {
             load_range_n: all.load_range_n.max(one.load_range_n),
             holds_s: all.holds_s.max(one.holds_s),
             unloaded_s: all.unloaded_s.max(one.unloaded_s),
+            judged_s: all.judged_s + one.judged_s,
+            controlled_s: all.controlled_s + one.controlled_s,
         };
     }
     all

@@ -28,6 +28,10 @@ pub(super) enum Need {
     ArmsUnloaded(f64),
     /// Several arms at once: sum of the openings.
     SeveralArms(f64),
+    /// The stroke of every arm judged for [`JUDGED_S`] at all: its chambers are full.
+    ArmsJudged,
+    /// The controller of every arm judged for as long: arms in manual position.
+    ArmsControlled,
     /// The front joint through a range while the machine moves, rad.
     Steers(f64),
     /// A step of the throttle.
@@ -73,6 +77,10 @@ impl Need {
                     did.openings
                 )
             }),
+            Self::ArmsJudged => Self::in_the_dark(&did.arms, |arm| arm.judged_s)
+                .map(|who| format!("the stroke of {who}, as a chamber reads empty")),
+            Self::ArmsControlled => Self::in_the_dark(&did.arms, |arm| arm.controlled_s)
+                .map(|who| format!("the controller of {who} in manual position")),
             Self::Steers(rad) => (did.steers_rad < rad).then(|| {
                 let (is, least) = (did.steers_rad.to_degrees(), rad.to_degrees());
                 format!("the front joint goes through {is:.1} deg of {least:.1} deg needed while rolling")
@@ -100,13 +108,21 @@ impl Need {
         }
     }
 
+    /// "FR FL could be judged for less than 2 s," for the arms of which that is so.
+    fn in_the_dark(arms: &PerWheel<ArmUse>, judged_s: impl Fn(&ArmUse) -> f64) -> Option<String> {
+        let dark = arms.iter().filter(|(_, arm)| judged_s(arm) < JUDGED_S);
+        let names: Vec<&str> = dark.map(|(wheel, _)| wheel.name()).collect();
+        let arms = names.join(" ");
+        (!names.is_empty()).then(|| format!("{arms} could be judged for less than {JUDGED_S:.0} s"))
+    }
+
     /// The scripted manoeuvre that has it.
     pub(super) const fn manoeuvre(self) -> &'static str {
         match self {
             Self::ArmsMove(_) | Self::ArmsTurn(_) | Self::ArmsUnloaded(_) => "single-arm",
             Self::ArmsMoveStanding(_) | Self::SeveralArms(_) => "arm-step",
             Self::LoadsDiffer(_) | Self::Commands => "multisine",
-            Self::ArmsHold(_) => "arm-step",
+            Self::ArmsHold(_) | Self::ArmsJudged | Self::ArmsControlled => "arm-step",
             Self::Steers(_) => "s-turn",
             Self::ThrottleSteps(_)
             | Self::Throttle(_)

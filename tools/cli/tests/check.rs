@@ -55,6 +55,22 @@ fn the_first_cases_of_a_folder_come_as_json_alone_on_stdout() {
 }
 
 #[test]
+fn a_case_that_cannot_be_read_is_told_and_the_others_are_scored() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = set(folder.path());
+    fs::write(Path::new(&set).join("a/short.log"), "(1.0) can0 1\n").unwrap();
+    let words = ["gap", "check", "--set", &set, "--no-how-far", "--no-baselines", "--json"];
+    let output = xt28(&words);
+    let [json, talk] = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap());
+    assert_eq!(output.status.code(), Some(1), "{talk}");
+    assert_eq!(cases(&json), CASES[1..]);
+    assert!(talk.contains("1 more could not be read and are in no score"), "{talk}");
+    let answer: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(answer["refused"][0]["case"], "a");
+    assert!(answer["refused"][0]["why"].as_str().unwrap().contains("short.log:1"), "{answer}");
+}
+
+#[test]
 fn json_in_a_file_leaves_the_table_on_stdout() {
     let folder = tempfile::tempdir().unwrap();
     let file = path(folder.path(), "scores.json");

@@ -7,9 +7,10 @@ mod soundness;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::{FieldRun, Signals, load_scale, swapped_wheels};
+use crate::diagnosis::{FieldRun, Inquiry, Signals, load_scale, swapped_wheels};
 use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
@@ -125,6 +126,25 @@ impl RunSet {
     pub fn notes(&self) -> Vec<String> {
         let faults = self.runs.iter().flat_map(|run| run.log.told_faults());
         self.notes.iter().cloned().chain(faults).collect()
+    }
+
+    /// What is asked of the runs, about a machine of `machine`'s make, without those that `choice` leaves out.
+    /// Where nobody chose which are held out, the last ones are without which the others show every effect
+    /// that all of them do. With `any_order`, wheels may look swapped.
+    ///
+    /// # Errors
+    /// As [`RunSet::into_field_runs`].
+    pub fn into_inquiry(
+        self,
+        machine: Machine,
+        choice: &Choice,
+        any_order: bool,
+    ) -> Result<Inquiry, GapError> {
+        let mut inquiry = Inquiry::new(machine, self.into_field_runs(choice, any_order)?);
+        if !choice.is_advised {
+            inquiry.hold_out_what_others_show();
+        }
+        Ok(inquiry)
     }
 
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may

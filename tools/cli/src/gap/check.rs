@@ -80,20 +80,25 @@ impl Check {
             bar.suspend(|| eprintln!("{}", line(examined)));
         };
         let options = Options { how_far: !self.no_how_far, baselines: !self.no_baselines };
-        let examined = examination.examine(options, &clock, &told)?;
+        let (examined, refused) = examination.examine(options, &clock, &told);
         bar.finish_and_clear();
         let mut judged = examination.open(examined)?;
         if !self.no_how_far {
             eprintln!("fitting the true causes, for how far a gap can shrink at best");
             judged = examination.with_oracle(judged)?;
         }
-        let mut report = Report::new(&examination, judged);
+        let all_read = refused.is_empty();
+        let withheld: Vec<Source> = withheld
+            .into_iter()
+            .filter(|source| refused.iter().all(|refused| refused.case != source.name()))
+            .collect();
+        let mut report = Report::new(&examination, judged).with_refused(refused);
         if self.sweep {
             let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
             report = report.with_sweep(sweep(&withheld, &told)?);
         }
         self.tell(&report)?;
-        Ok(Verdict::Positive)
+        Ok(if all_read { Verdict::Positive } else { Verdict::Negative })
     }
 
     /// The cases to examine; refuses to write over any file of the set, also of cases that are left out.

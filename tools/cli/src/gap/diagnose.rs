@@ -146,11 +146,7 @@ impl Diagnose {
         let given = Given { about, dbc: &self.dbc, machine: machine_file };
         let remarks = remarks(&set, &given)?;
         let left: Vec<String> = left_out(&set, &choice);
-        let mut inquiry =
-            Inquiry::new(machine, set.into_field_runs(&choice, self.accept_wheel_order)?);
-        if !choice.is_advised {
-            inquiry.hold_out_what_others_show();
-        }
+        let mut inquiry = set.into_inquiry(machine, &choice, self.accept_wheel_order)?;
         let mut notes = vec![split(&inquiry, &left, &choice.why)];
         notes.extend(remarks);
         inquiry.believed = believed.effects();

@@ -12,9 +12,8 @@
 
 use std::path::PathBuf;
 
-use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Inquiry, Knob, Signals};
+use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Knob, Signals};
 use xt28_gap_check::Source;
-use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::find;
 
@@ -37,8 +36,7 @@ fn main() -> Result<(), String> {
     }
     for folder in arguments.into_iter().map(PathBuf::from) {
         let case = Source::Folder { answer: folder.with_extension("answer.toml"), folder };
-        let runs = case.runs().map_err(|error| error.to_string())?;
-        let mut inquiry = Inquiry::new(Machine::xt28(), runs);
+        let mut inquiry = case.inquiry().map_err(|error| error.to_string())?;
         if let Some(effect) = withheld {
             inquiry = inquiry.without(effect);
         }

@@ -2,9 +2,9 @@
 
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use xt28_gap::diagnosis::{Diagnosis, Inquiry, Shrink};
+use serde::Serialize;
+use xt28_gap::diagnosis::{Diagnosis, Shrink};
 use xt28_gap_plants::Seal;
-use xt28_machine::Machine;
 
 use crate::CheckError;
 use crate::baselines::BASELINES;
@@ -42,6 +42,15 @@ pub struct Examined {
     pub replies: Vec<Reply>,
     /// Time that the diagnosis took, s; on one core where there are as many cases as cores.
     pub seconds: f64,
+}
+
+/// One case that nobody could diagnose: it is in no score.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Refused {
+    /// Name of the case.
+    pub case: String,
+    /// What is wrong with its logs, and what to do.
+    pub why: String,
 }
 
 /// One case with its answer.
@@ -105,22 +114,29 @@ impl Examination {
         self.sources.is_empty()
     }
 
-    /// Diagnoses every case on all cores. `told` hears of each that is done, from any thread.
-    ///
-    /// # Errors
-    /// [`CheckError`] of the first case whose logs cannot be made or read.
+    /// Diagnoses every case on all cores, and says which could not be, as their logs cannot be made or read.
+    /// `told` hears of each that is done, from any thread.
+    #[must_use]
     pub fn examine(
         &self,
         options: Options,
         clock: Clock<'_>,
         told: &(dyn Fn(&Examined) + Sync),
-    ) -> Result<Vec<Examined>, CheckError> {
+    ) -> (Vec<Examined>, Vec<Refused>) {
         let one = |source: &Source| {
-            let examined = examine(source, options, clock)?;
+            let examined = examine(source, options, clock)
+                .map_err(|error| Refused { case: source.name(), why: error.to_string() })?;
             told(&examined);
             Ok(examined)
         };
-        crew::each(&self.sources, one).into_iter().collect()
+        let (mut examined, mut refused) = (Vec::new(), Vec::new());
+        for case in crew::each(&self.sources, one) {
+            match case {
+                Ok(case) => examined.push(case),
+                Err(case) => refused.push(case),
+            }
+        }
+        (examined, refused)
     }
 
     /// Reads the answers again and opens the seal.
@@ -132,10 +148,15 @@ impl Examination {
         if !self.seal.holds(&self.salt, texts.iter().map(String::as_str)) {
             return Err(CheckError::SealBroken { seal: self.seal.to_string() });
         }
-        let judge = |((source, text), examined): ((&Source, &String), Examined)| {
-            Ok(Judged { truth: truth(source, text)?, examined, oracle: None })
-        };
-        self.sources.iter().zip(&texts).zip(examined).map(judge).collect()
+        // Cases that were refused are not there.
+        let mut examined = examined.into_iter().peekable();
+        let mut judged = Vec::new();
+        for (source, text) in self.sources.iter().zip(&texts) {
+            if let Some(examined) = examined.next_if(|examined| examined.case == source.name()) {
+                judged.push(Judged { truth: truth(source, text)?, examined, oracle: None });
+            }
+        }
+        Ok(judged)
     }
 
     /// The same cases with how far the gap shrinks for who knows their truth; on all cores.
@@ -143,11 +164,13 @@ impl Examination {
     /// # Errors
     /// [`CheckError`] of the first case whose logs cannot be made, read or replayed.
     pub fn with_oracle(&self, judged: Vec<Judged>) -> Result<Vec<Judged>, CheckError> {
-        let cases: Vec<_> = self.sources.iter().zip(judged).collect();
-        let one = |(source, judged): &(&Source, Judged)| {
-            Ok(Judged { oracle: oracle(source, &judged.truth)?, ..judged.clone() })
+        let one = |judged: &Judged| {
+            let case = &judged.examined.case;
+            let source = self.sources.iter().find(|source| source.name() == *case);
+            let oracle = source.map(|source| oracle(source, &judged.truth)).transpose()?;
+            Ok(Judged { oracle: oracle.flatten(), ..judged.clone() })
         };
-        crew::each(&cases, one).into_iter().collect()
+        crew::each(&judged, one).into_iter().collect()
     }
 }
 
@@ -173,7 +196,7 @@ fn texts(sources: &[Source]) -> Result<Vec<String>, CheckError> {
 }
 
 fn examine(source: &Source, options: Options, clock: Clock<'_>) -> Result<Examined, CheckError> {
-    let mut inquiry = Inquiry::new(Machine::xt28(), source.runs()?);
+    let mut inquiry = source.inquiry()?;
     inquiry.how_far = options.how_far;
     let began = clock();
     let diagnosis = inquiry.diagnose(&|_| ());

@@ -27,7 +27,7 @@ mod wilson;
 
 pub use baselines::{BASELINES, Baseline};
 pub use error::CheckError;
-pub use examination::{Clock, Examination, Examined, Judged, Options};
+pub use examination::{Clock, Examination, Examined, Judged, Options, Refused};
 pub use reply::{Named, Reply};
 pub use report::Report;
 pub use score::{

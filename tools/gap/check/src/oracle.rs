@@ -1,7 +1,6 @@
 //! How far the gap shrinks for who knows the cause: what a diagnosis can reach at best.
 
-use xt28_gap::diagnosis::{Cause, Estimate, HowFar, Inquiry, Shrink};
-use xt28_machine::Machine;
+use xt28_gap::diagnosis::{Cause, Estimate, HowFar, Shrink};
 
 use crate::CheckError;
 use crate::source::Source;
@@ -16,7 +15,7 @@ pub(crate) fn oracle(source: &Source, truth: &Truth) -> Result<Option<Shrink>, C
     if !truth.is_nameable() {
         return Ok(None);
     }
-    let inquiry = Inquiry::new(Machine::xt28(), source.runs()?);
+    let inquiry = source.inquiry()?;
     let causes: Vec<Cause> = truth.facts.iter().filter_map(cause).collect();
     Ok(Some(HowFar::new(&inquiry)?.refit(&causes).shrink))
 }

@@ -7,7 +7,7 @@ use xt28_gap::diagnosis::{Shrink, Verdict};
 
 use crate::baselines::BASELINES;
 use crate::coverage::covered;
-use crate::examination::{Examination, Judged};
+use crate::examination::{Examination, Judged, Refused};
 use crate::reply::Reply;
 use crate::score::{
     Bin, Score, Scores, Statement, Suited, error_by_chance, reliability, scores, statements, suited,
@@ -31,6 +31,7 @@ pub struct Report {
     own: Scores,
     statements: Vec<Statement>,
     sweep: Vec<Withheld>,
+    refused: Vec<Refused>,
 }
 
 impl Report {
@@ -48,13 +49,20 @@ impl Report {
         let statements = said.collect();
         let own = own_scores(&cases);
         let (seal, salt) = (examination.seal().to_string(), examination.salt());
-        Self { seal, salt, cases, columns, own, statements, sweep: Vec::new() }
+        let (sweep, refused) = (Vec::new(), Vec::new());
+        Self { seal, salt, cases, columns, own, statements, sweep, refused }
     }
 
     /// The same with what came of withholding each effect.
     #[must_use]
     pub fn with_sweep(self, sweep: Vec<Withheld>) -> Self {
         Self { sweep, ..self }
+    }
+
+    /// The same with the cases that could not be diagnosed.
+    #[must_use]
+    pub fn with_refused(self, refused: Vec<Refused>) -> Self {
+        Self { refused, ..self }
     }
 
     /// The scores of the diagnosis by name, as in the table.
@@ -106,6 +114,13 @@ impl Report {
             "value [95 % interval] cases (of calibration: statements; of intervals: numbers); intervals are Wilson's \
              for shares, a bootstrap over cases for the rest\n"
         )?;
+        if !self.refused.is_empty() {
+            writeln!(to, "{} more could not be read and are in no score", self.refused.len())?;
+            for Refused { case, why } in &self.refused {
+                writeln!(to, "  {case}: {why}")?;
+            }
+            writeln!(to)?;
+        }
         self.write_reliability(to)?;
         self.write_scales(to)?;
         self.write_wrong(to)?;
@@ -217,6 +232,7 @@ impl Report {
             "scales": self.scales(),
             "cases": cases.collect::<Vec<_>>(),
             "withheld": self.sweep,
+            "refused": self.refused,
         })
     }
 }

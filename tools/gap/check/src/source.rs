@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use flate2::bufread::MultiGzDecoder;
 use rand::{RngCore, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use xt28_gap::diagnosis::FieldRun;
+use xt28_gap::diagnosis::{FieldRun, Inquiry};
 use xt28_gap::{About, Decoder, FieldLog, GapError, Known, Mapping, RunSet};
 use xt28_gap_plants::{Case, Kind};
+use xt28_machine::Machine;
 
 use crate::CheckError;
 
@@ -124,14 +125,14 @@ impl Source {
         }
     }
 
-    /// Its runs, as a diagnosis gets them.
+    /// What a diagnosis is asked about it: its runs, and which of them are held out.
     ///
     /// # Errors
     /// [`CheckError`] for logs that cannot be made or read.
-    pub fn runs(&self) -> Result<Vec<FieldRun>, CheckError> {
+    pub fn inquiry(&self) -> Result<Inquiry, CheckError> {
         match self {
-            Self::Drawn(case) => runs_of(case),
-            Self::Folder { folder, .. } => runs_in(folder),
+            Self::Drawn(case) => Ok(Inquiry::new(Machine::xt28(), runs_of(case)?)),
+            Self::Folder { folder, .. } => inquiry_in(folder),
         }
     }
 }
@@ -165,7 +166,7 @@ fn runs_of(case: &Case) -> Result<Vec<FieldRun>, CheckError> {
     Ok(runs)
 }
 
-fn runs_in(folder: &Path) -> Result<Vec<FieldRun>, CheckError> {
+fn inquiry_in(folder: &Path) -> Result<Inquiry, CheckError> {
     let path = folder.join(ABOUT);
     let about = About::load(&path)?;
     let dbc = about.dbc.as_ref().ok_or_else(|| CheckError::NoDatabase { path: path.clone() })?;
@@ -177,7 +178,7 @@ fn runs_in(folder: &Path) -> Result<Vec<FieldRun>, CheckError> {
     let known = Known { about: Some(&path), terrain: None };
     let runs = RunSet::load(&logs, &decoder, known, false)?;
     let choice = runs.choose(&[], &[])?;
-    Ok(runs.into_field_runs(&choice, false)?)
+    Ok(runs.into_inquiry(Machine::xt28(), &choice, false)?)
 }
 
 fn run(about: &About, path: &Path, log: FieldLog) -> Result<FieldRun, CheckError> {

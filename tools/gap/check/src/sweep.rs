@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Spot, Verdict};
 use xt28_gap_plants::{Case, Cause as Fault, Scope as Wheels, Scopes};
-use xt28_machine::{Machine, Wheel};
+use xt28_machine::Wheel;
 use xt28_sim::effects::{CATALOGUE, Effect, Scope};
 
 use crate::examination::truth_of;
@@ -91,7 +91,7 @@ pub fn sweep_scores(all: &[Withheld]) -> [Score; 4] {
 }
 
 fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
-    let mut whole = Inquiry::new(Machine::xt28(), machine.runs()?);
+    let mut whole = machine.inquiry()?;
     whole.how_far = false;
     let effects: Vec<_> =
         facts.iter().filter_map(|fact| Some((fact.effect?, fact.scope))).collect();

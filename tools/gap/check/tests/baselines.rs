@@ -1,14 +1,13 @@
 //! The plain rules on machines for which they were made: they are no straw men.
 
-use xt28_gap::diagnosis::{Inquiry, Verdict};
+use xt28_gap::diagnosis::Verdict;
 use xt28_gap_check::{BASELINES, Reply, Source};
 use xt28_gap_plants::{Case, Cause, Manoeuvre, Scope};
-use xt28_machine::Machine;
 
 /// What the rule of this name says of the first seconds of one run.
 fn reply(name: &str, case: &Case, manoeuvre: Manoeuvre, seconds: f64) -> Reply {
     let source = Source::Drawn(Box::new(case.only(manoeuvre, seconds)));
-    let inquiry = Inquiry::new(Machine::xt28(), source.runs().unwrap());
+    let inquiry = source.inquiry().unwrap();
     let rule = BASELINES.iter().find(|rule| rule.name == name).expect("there is this rule");
     rule.reply(&inquiry)
 }

@@ -8,7 +8,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::{self, find};
 
 fn signals(case: Case) -> Vec<Signals> {
-    let runs = Source::Drawn(Box::new(case)).runs().expect("a case that is drawn has runs");
+    let runs = Source::Drawn(Box::new(case)).inquiry().expect("a case that is drawn has runs").runs;
     runs.into_iter().map(|run| run.signals).collect()
 }
 

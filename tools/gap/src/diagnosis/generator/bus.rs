@@ -1,6 +1,6 @@
 //! What reaches the ECUs, and when: frames that are missing, frames that are late.
 //!
-//! Commands come every ten milliseconds by one clock. Loss leaves holes in that row and every frame
+//! Commands come by one clock, every ten milliseconds where a gateway keeps the wire contract. Loss leaves holes in that row and every frame
 //! that comes in its place; lateness moves frames off their places and loses none. What is expected, and how
 //! far chance leads from it within a second, is that of the effects' own law, on a long row of frames.
 
@@ -31,7 +31,10 @@ pub(super) struct BusErrors {
 /// Time over which frames are counted, s.
 const WINDOW_S: f64 = 1.0;
 /// Period of the two commands, s (the wire contract).
-const PERIOD_S: f64 = 0.01;
+pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
+/// Commands that mostly come this many periods apart or more are of a gateway that has another: a bus that
+/// loses a third of them leaves most where they were.
+const ANOTHER: f64 = 1.5;
 /// Within this time of a window's beginning and end commands are taken to fill it, s.
 const BEGINS_S: f64 = 0.03;
 /// Windows of the row on which an expectation stands: chance leaves 0.2 % to a loss of a tenth.
@@ -40,7 +43,8 @@ const ROW: u32 = 200;
 /// Errors over a run.
 #[must_use]
 pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
-    let expected = Expected::of(effects);
+    let period_s = command_period_s(signals);
+    let expected = Expected::of(effects, period_s);
     let samples = (WINDOW_S / DT_S) as usize;
     let mut errors = BusErrors::default();
     for window in 0..signals.len / samples {
@@ -51,8 +55,10 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
             }
             continue;
         }
-        let seen =
-            signals.command_times_s.each_ref().map(|times| Row::of_window(times, window as f64));
+        let seen = signals
+            .command_times_s
+            .each_ref()
+            .map(|times| Row::of_window(times, window as f64, period_s));
         let less = |of: fn(&Row) -> f64, signal: Signal| {
             let chance = of(&expected.chance) / signal.floor().sigma;
             (of(&expected.mean) - (of(&seen[0]) + of(&seen[1])) / 2.0) / chance.hypot(1.0)
@@ -62,6 +68,21 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
         fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven));
     }
     errors
+}
+
+/// The period of the commands of a run, s: that of the wire contract, or what most of them are apart where
+/// that is more by half.
+#[must_use]
+pub(in crate::diagnosis) fn command_period_s(signals: &Signals) -> f64 {
+    let each = signals.command_times_s.iter().flat_map(|times| times.windows(2));
+    let mut apart_s: Vec<f64> = each.map(|pair| pair[1] - pair[0]).collect();
+    if apart_s.is_empty() {
+        return PERIOD_S;
+    }
+    let middle = apart_s.len() / 2;
+    let (_, median_s, _) = apart_s.select_nth_unstable_by(middle, f64::total_cmp);
+    let whole_s = (*median_s * 1e3).round() * 1e-3;
+    if whole_s > ANOTHER * PERIOD_S { whole_s } else { PERIOD_S }
 }
 
 /// Whether somebody sent commands from the beginning of a window to its end: before the first command and
@@ -80,9 +101,10 @@ struct Expected {
 }
 
 impl Expected {
-    fn of(effects: &Effects) -> Self {
-        let times_s = expected_times_s(effects);
-        let rows: Vec<Row> = (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k))).collect();
+    fn of(effects: &Effects, period_s: f64) -> Self {
+        let times_s = expected_times_s(effects, period_s);
+        let rows: Vec<Row> =
+            (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k), period_s)).collect();
         let mean_of =
             |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
         let mean = Row {
@@ -109,24 +131,24 @@ struct Row {
 
 impl Row {
     /// Of those of `times_s` that fall within a window, counted from 0.
-    fn of_window(times_s: &[f64], window: f64) -> Self {
+    fn of_window(times_s: &[f64], window: f64, period_s: f64) -> Self {
         let [from, to] =
             [window, window + 1.0].map(|at| times_s.partition_point(|time| *time < at * WINDOW_S));
-        Self::of(&times_s[from..to], WINDOW_S)
+        Self::of(&times_s[from..to], WINDOW_S, period_s)
     }
 
     /// Of frames that came at `times_s` within `window_s`.
-    fn of(times_s: &[f64], window_s: f64) -> Self {
+    fn of(times_s: &[f64], window_s: f64, period_s: f64) -> Self {
         if times_s.len() < 2 {
             return Self { missing: 1.0, out_of_place: 0.0, uneven: 0.0 };
         }
         let count = times_s.len() as f64;
         let pointer = |part: fn(f64) -> f64| {
-            times_s.iter().map(|at| part(TAU * at / PERIOD_S)).sum::<f64>() / count
+            times_s.iter().map(|at| part(TAU * at / period_s)).sum::<f64>() / count
         };
-        let apart = times_s.windows(2).map(|pair| (pair[1] - pair[0]) / PERIOD_S - 1.0);
+        let apart = times_s.windows(2).map(|pair| (pair[1] - pair[0]) / period_s - 1.0);
         Self {
-            missing: 1.0 - count * PERIOD_S / window_s,
+            missing: 1.0 - count * period_s / window_s,
             out_of_place: 1.0 - pointer(f64::cos).hypot(pointer(f64::sin)),
             uneven: (apart.map(|by| by * by).sum::<f64>() / (count - 1.0)).sqrt(),
         }
@@ -135,16 +157,16 @@ impl Row {
 
 /// Instants at which a long row of frames comes under the bus's effects. What chance would draw comes
 /// from a fixed row of draws, so that the same belief always gives the same frames.
-fn expected_times_s(effects: &Effects) -> Vec<f64> {
+fn expected_times_s(effects: &Effects, period_s: f64) -> Vec<f64> {
     let (loss, late) = (effects.bus.frame_loss.share, effects.bus.command_jitter.latest_s);
     let mut before_s = 0.0_f64;
-    let frames = (f64::from(ROW) * WINDOW_S / PERIOD_S) as u32;
+    let frames = (f64::from(ROW) * WINDOW_S / period_s) as u32;
     let mut random = ChaCha8Rng::seed_from_u64(0);
     (0..frames)
         .filter_map(|k| {
             // Order is kept: a frame waits for the one before it.
             before_s =
-                before_s.max((f64::from(k) + 0.5) * PERIOD_S + late * random.random::<f64>());
+                before_s.max((f64::from(k) + 0.5) * period_s + late * random.random::<f64>());
             (random.random::<f64>() >= loss).then_some(before_s)
         })
         .collect()
@@ -158,7 +180,32 @@ mod tests {
         let mut effects = Effects::default();
         effects.bus.frame_loss.share = loss;
         effects.bus.command_jitter.latest_s = late_s;
-        Expected::of(&effects).mean
+        Expected::of(&effects, PERIOD_S).mean
+    }
+
+    /// A run of ten seconds whose commands come `period_s` apart, all but every tenth.
+    fn commanded(period_s: f64) -> Signals {
+        let ten = (0..1000).map(|i| (f64::from(i) * 0.01, 0.0));
+        let all = crate::Channel::all().into_iter().map(|c| (c, ten.clone().collect()));
+        let ground = crate::Terrain::Flat;
+        let mut signals = Signals::of_series("made up", &all.collect(), 10.0, ground).unwrap();
+        let frames = (0..(10.0 / period_s) as u32).filter(|k| k % 10 != 3);
+        let times_s: Vec<f64> = frames.map(|k| (f64::from(k) + 0.5) * period_s).collect();
+        signals.command_times_s = [times_s.clone(), times_s];
+        signals
+    }
+
+    #[test]
+    fn a_gateway_that_sends_less_often_loses_nothing_by_that() {
+        for period_s in [0.01, 0.02, 0.05] {
+            let signals = commanded(period_s);
+            assert!((command_period_s(&signals) - period_s).abs() < 1e-12);
+            let mut effects = Effects::default();
+            effects.bus.frame_loss.share = 0.1;
+            let errors = bus_errors(&signals, &effects);
+            let largest = errors.missing.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+            assert!(largest < 1.5, "{period_s}: {largest}");
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::super::candidates::Candidate;
 use super::super::floor::Signal;
 use super::super::floors::Floors;
+use super::super::generator::{PERIOD_S, command_period_s};
 use super::super::hypothesis::Fit;
 use super::super::inquiry::Inquiry;
 use super::super::verdict::Verdict;
@@ -20,6 +21,7 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
     notes.extend(shown_by_held_alone(inquiry));
+    notes.extend(commanded_seldom(inquiry));
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
     if !alike.is_empty() {
@@ -34,6 +36,21 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
         notes.push(findings.why_unknown());
     }
     notes
+}
+
+/// Runs whose commands come less often than the wire contract has it.
+fn commanded_seldom(inquiry: &Inquiry) -> Option<String> {
+    let seldom = inquiry.runs.iter().filter_map(|run| {
+        let period_s = command_period_s(&run.signals);
+        (period_s > PERIOD_S).then(|| format!("every {:.0} ms in {}", period_s * 1e3, run.file()))
+    });
+    let seldom: Vec<String> = seldom.collect();
+    (!seldom.is_empty()).then(|| {
+        let told = seldom.join(", ");
+        format!(
+            "commands come {told}, and not every 10 ms: their loss and lateness are judged by that"
+        )
+    })
 }
 
 /// Effects that no run that was fitted can show.

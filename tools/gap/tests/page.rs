@@ -27,7 +27,7 @@ fn who_decides_reads_how_large_it_is_and_who_mends_which_gap_has_which_share() {
 
 #[test]
 fn a_gap_is_shown_in_the_regimes_that_there_were_and_in_no_other() {
-    let details = Details::new(&inquiry(), &diagnosis(Verdict::None));
+    let details = Details::new(&inquiry(), &diagnosis(Verdict::None)).unwrap();
     let row = |name: &str| details.map.iter().find(|row| row.name == name).expect("a row");
     let cell = |name: &str, regime: &str| {
         let at = REGIMES.iter().position(|other| *other == regime).expect("a column");
@@ -79,7 +79,7 @@ fn a_page_says_the_verdict_and_both_causes() {
     for part in ["noise floors", "horizon, s", "time, s", "with the causes put in"] {
         assert!(page.contains(part), "{part}");
     }
-    let traces = Details::new(&inquiry(), &diagnosis(Verdict::Effect)).traces;
+    let traces = Details::new(&inquiry(), &diagnosis(Verdict::Effect)).unwrap().traces;
     assert!(traces.iter().any(|trace| page.contains(trace.unit)), "units are on the axes");
 }
 

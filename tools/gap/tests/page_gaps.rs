@@ -34,7 +34,8 @@ fn a_second_place_without_a_gap_comes_before_none_that_has_one() {
 
 /// Names of the curves over the horizon, in their order, of a verdict with these places.
 fn curves(places: Vec<Place>) -> Vec<String> {
-    let details = Details::new(&inquiry(), &Diagnosis { places, ..diagnosis(Verdict::Effect) });
+    let told = Diagnosis { places, ..diagnosis(Verdict::Effect) };
+    let details = Details::new(&inquiry(), &told).unwrap();
     details.horizons.into_iter().map(|curve| curve.name).collect()
 }
 

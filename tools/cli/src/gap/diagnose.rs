@@ -206,8 +206,8 @@ impl Diagnose {
             let late: String = late.collect();
             Ok((path, format!("# {head}\n{late}\n{}", diagnosis.overlay().to_toml())))
         });
-        let report = self.report.as_ref().map(|path| {
-            let details = Details::new(inquiry, diagnosis);
+        let report = self.report.as_ref().map(|path| -> Result<_, Failure> {
+            let details = Details::new(inquiry, diagnosis)?;
             Ok((path, page::html(&self.subject()?, &inquiry.machine, diagnosis, &details)))
         });
         for file in [json, report, overlay].into_iter().flatten() {

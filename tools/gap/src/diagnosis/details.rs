@@ -7,6 +7,7 @@
 mod horizons;
 mod regimes;
 mod traces;
+mod whole;
 
 use rayon::prelude::*;
 use xt28_machine::Wheel;
@@ -15,6 +16,7 @@ use xt28_sim::Effects;
 use super::generator::{Generator, Residual};
 use super::inquiry::Inquiry;
 use super::verdict::Diagnosis;
+use crate::GapError;
 
 pub use horizons::{Curve, HORIZONS_S};
 pub use regimes::{OF_ARM, REGIMES, Row};
@@ -35,6 +37,9 @@ pub struct Details {
     /// Where the gap is largest on runs that were not fitted, before and after; on fitted ones where
     /// all were.
     pub traces: Vec<Trace>,
+    /// The whole machine over the run that parts most of those not fitted, before and after; nothing where how far the
+    /// gap shrinks was not asked.
+    pub whole: Vec<Trace>,
     /// Whether there are causes to put in: else before and after are the same.
     pub has_after: bool,
     /// What is wrong with the logs, a line each.
@@ -64,13 +69,15 @@ struct Pair {
 
 impl Details {
     /// The details of `diagnosis`, which answers `inquiry`.
-    #[must_use]
-    pub fn new(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Self {
+    ///
+    /// # Errors
+    /// [`GapError::Command`] for a command that our bus cannot say.
+    pub fn new(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Result<Self, GapError> {
         let overlay = diagnosis.overlay();
         let mut with_causes = inquiry.believed.clone();
         overlay.entries.iter().for_each(|entry| entry.apply(&mut with_causes));
         let pairs = pairs(inquiry, &with_causes, diagnosis.since_s());
-        Self {
+        Ok(Self {
             runs: inquiry
                 .runs
                 .iter()
@@ -84,9 +91,10 @@ impl Details {
             map: regimes::map(inquiry, &pairs),
             horizons: horizons::curves(&pairs, diagnosis),
             traces: traces::traces(inquiry, &pairs),
+            whole: whole::whole(inquiry, diagnosis)?,
             has_after: !overlay.entries.is_empty(),
             faults: inquiry.runs.iter().flat_map(|run| run.log.told_faults()).collect(),
-        }
+        })
     }
 }
 

@@ -23,8 +23,8 @@ mod twin;
 
 use rayon::prelude::*;
 use xt28_machine::Machine;
+use xt28_sim::Effects;
 use xt28_sim::effects::{Entry, Overlay, Scope};
-use xt28_sim::{Effects, Held};
 
 pub use course::{Horizon, Quantity};
 pub use refit::Refit;
@@ -115,15 +115,16 @@ impl HowFar {
         Quantity::ALL.into_iter().zip(squares::by_signal(&squares)).collect()
     }
 
-    /// What run number `run` shows, and what it is foretold to show under `effects` from its first
-    /// measured state.
+    /// What run number `run` shows, and what it is foretold to show with `causes`, once they begin, from its
+    /// first measured state.
     ///
     /// # Panics
     /// For a run that the inquiry does not have.
     #[must_use]
-    pub fn traces(&self, run: usize, effects: &Effects) -> Traces {
+    pub fn traces(&self, run: usize, causes: &[Cause]) -> Traces {
         let course = &self.courses[run];
-        let foretold = course.foretell(&self.machine, effects, Horizon::Run, Held::default());
+        let (both, since_s) = ([&self.believed, &self.with(causes)], since_s(causes));
+        let foretold = course.foretell_since(&self.machine, both, since_s, Horizon::Run);
         Traces { run: course.signals.name.clone(), channels: traces::traces(course, &foretold) }
     }
 

@@ -5,6 +5,7 @@ use core::fmt::Write as _;
 
 use super::colour::{AFTER, BEFORE, INK};
 use super::{assumptions, caption, heat, horizon, table, trace};
+use crate::diagnosis::details::Trace;
 use crate::diagnosis::{Details, Diagnosis};
 
 /// The page's body.
@@ -41,8 +42,18 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
         out,
         "<h2>Traces: {held}</h2><p class=\"small\">{lines} Measured: <span style=\"color:{INK}\">▬ grey</span>.</p>"
     );
-    for one in &details.traces {
-        let _ = write!(out, "<figure>{}</figure>", trace::draw(one, details.has_after));
+    let figures = |out: &mut String, traces: &[Trace]| {
+        for one in traces {
+            let _ = write!(out, "<figure>{}</figure>", trace::draw(one, details.has_after));
+        }
+    };
+    figures(&mut out, &details.traces);
+    if !details.whole.is_empty() {
+        out.push_str(
+            "<h2>The whole machine, foretold over a run</h2><p class=\"small\">From its first measured \
+             state on its own commands alone, as the shrink over a run is judged: errors add up.</p>",
+        );
+        figures(&mut out, &details.whole);
     }
     let _ = write!(
         out,

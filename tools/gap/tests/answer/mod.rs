@@ -103,7 +103,7 @@ pub(crate) fn page(verdict: Verdict) -> String {
 
 pub(crate) fn page_of(diagnosis: &Diagnosis) -> String {
     let inquiry = inquiry();
-    let details = Details::new(&inquiry, diagnosis);
+    let details = Details::new(&inquiry, diagnosis).unwrap();
     let subject = Subject { name: HOSTILE.to_owned(), date: HOSTILE.to_owned() };
     html(&subject, &inquiry.machine, diagnosis, &details)
 }

@@ -24,8 +24,14 @@ impl HowFar {
             let causes: Vec<Cause> =
                 stood_by.iter().map(|&k| diagnosis.causes[k].clone()).collect();
             let refit = self.refit(&causes);
-            for (&k, estimates) in stood_by.iter().zip(refit.estimates) {
-                diagnosis.causes[k].parameters = estimates;
+            // From the first beginning on, one that begins later would be fitted to a time without it.
+            match at_different_times(&causes) {
+                Some(note) => diagnosis.notes.push(note),
+                None => {
+                    for (&k, estimates) in stood_by.iter().zip(refit.estimates) {
+                        diagnosis.causes[k].parameters = estimates;
+                    }
+                }
             }
             progress("fitting a free model of the residuals", 0.7);
             diagnosis.together = Some(Together {
@@ -60,10 +66,56 @@ impl HowFar {
     }
 }
 
+/// What to say of causes that do not set in together; nothing of those that do.
+fn at_different_times(causes: &[Cause]) -> Option<String> {
+    let begins = |cause: &Cause| cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
+    let each: Vec<f64> = causes.iter().map(begins).collect();
+    each.windows(2).any(|pair| pair[0] != pair[1]).then(|| {
+        let told = |(cause, at_s): (&Cause, &f64)| format!("{} from {at_s:.1} s", cause.effect.name);
+        let told: Vec<String> = causes.iter().zip(&each).map(told).collect();
+        format!(
+            "{}: how far the gap shrinks with both is told with both of them from the first of these on, \
+             so that it may shrink less than it would; their sizes are what the blocks alone say",
+            told.join(", ")
+        )
+    })
+}
+
 /// Block among whose places a share is dealt out.
 const fn carrier(block: Block) -> Block {
     match block {
         Block::Arms | Block::Steering | Block::Drive => block,
         Block::Tyre | Block::Payload | Block::Ground | Block::Sensor | Block::Bus => Block::Payload,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::{Scope, find};
+
+    use super::*;
+    use crate::diagnosis::verdict::Beginning;
+
+    fn cause(name: &str, at_s: Option<f64>) -> Cause {
+        Cause {
+            effect: find(name).unwrap(),
+            scope: Scope::All,
+            scopes: vec![(Scope::All, 1.0)],
+            probability: 0.9,
+            parameters: Vec::new(),
+            class: vec!["arm-delay"],
+            begins: at_s.map(|at_s| Beginning { run: "every run".to_owned(), at_s }),
+            shrink: None,
+        }
+    }
+
+    #[test]
+    fn causes_that_set_in_one_after_the_other_are_told() {
+        let of = |a, b| at_different_times(&[cause("arm-delay", a), cause("payload", b)]);
+        assert_eq!(of(None, None), None);
+        assert_eq!(of(Some(12.0), Some(12.0)), None);
+        let note = of(None, Some(12.0)).unwrap();
+        assert!(note.starts_with("arm-delay from 0.0 s, payload from 12.0 s: "), "{note}");
+        assert_eq!(at_different_times(&[cause("arm-delay", Some(3.0))]), None);
     }
 }

@@ -313,6 +313,7 @@ impl Machine {
             return Err(MachineError::Circuits { path: path.to_owned(), found });
         }
         let fault = range::too_low(self).or_else(|| range::misplaced(self));
+        let fault = fault.or_else(|| range::unhinged(self));
         let fault = fault.or_else(|| self.levelling.fault());
         if let Some((key, value, must)) = fault {
             let key = key.to_owned();

@@ -6,6 +6,10 @@ use crate::Machine;
 const MAGNITUDE_MAX: f64 = 1e9;
 /// Nor longer, m (assumed).
 const LENGTH_MAX_M: f64 = 100.0;
+/// Least lever of a cylinder about its arm's pivot, m (assumed): with none it moves nothing.
+const LEVER_MIN_M: f64 = 0.05;
+/// How far beyond its ends a cylinder may be driven, m: its metal stops give way.
+const STOP_GIVES_M: f64 = 0.02;
 /// What may lie on either side of zero; all else is a size or a gain.
 const SIGNED: [&str; 9] = [
     "front_com_m",
@@ -72,6 +76,24 @@ pub(crate) fn misplaced(machine: &Machine) -> Option<(&'static str, f64, &'stati
     }
     let high_m = sensors.gnss_antenna_m[2];
     (high_m <= 0.0).then_some(("sensors.gnss_antenna_m", high_m, "it must be above the ground"))
+}
+
+/// A cylinder that does not close the triangle with its two eyes, or only just: section and key, the value,
+/// what it must be.
+pub(crate) fn unhinged(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
+    let (arms, linkage) = (&machine.arms, machine.linkage());
+    let moves = |stroke_m: f64| linkage.at_stroke(stroke_m).lever_m >= LEVER_MIN_M;
+    if !moves(-STOP_GIVES_M) {
+        let must = "20 mm shorter still, the cylinder must reach between the arm's two eyes \
+                    (arms.pivot_to_cylinder_eye_m, arms.pivot_to_rod_eye_m) with a lever of 0.05 m \
+                    about the pivot";
+        return Some(("arms.closed_length_m", arms.closed_length_m, must));
+    }
+    let must = "with arms.closed_length_m and 20 mm more, the cylinder must reach between the arm's two \
+                eyes (arms.pivot_to_cylinder_eye_m, arms.pivot_to_rod_eye_m) with a lever of 0.05 m \
+                about the pivot";
+    let far_m = arms.stroke_max_m + STOP_GIVES_M;
+    (!moves(far_m)).then_some(("arms.stroke_max_m", arms.stroke_max_m, must))
 }
 
 /// A number that is too low: section and key, the value, what it must be.
@@ -205,5 +227,25 @@ mod tests {
             let error = refusal(from, to);
             assert!(error.starts_with(&format!("m.toml: {wanted}")), "{error}");
         }
+    }
+
+    #[test]
+    fn a_cylinder_closes_the_triangle_at_every_stroke() {
+        for (from, to) in [
+            // Shorter than the eyes come together, longer than they come apart, and only just.
+            ("closed_length_m = 0.85", "closed_length_m = 0.45"),
+            ("closed_length_m = 0.85", "closed_length_m = 0.714"),
+            ("closed_length_m = 0.85", "closed_length_m = 1.8"),
+            ("stroke_max_m = 0.50 ", "stroke_max_m = 0.9 "),
+            ("stroke_max_m = 0.50 ", "stroke_max_m = 0.855 "),
+        ] {
+            let error = refusal(from, to);
+            let key = from.split(' ').next().unwrap();
+            assert!(error.starts_with(&format!("m.toml: arms.{key} = ")), "{error}");
+            assert!(error.contains("lever of 0.05 m"), "{error}");
+        }
+        let longer =
+            Machine::builtin_text().replace("stroke_max_m = 0.50 ", "stroke_max_m = 0.80 ");
+        assert!(Machine::parse(&longer, Path::new("m.toml")).is_ok());
     }
 }

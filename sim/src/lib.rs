@@ -10,6 +10,7 @@ mod actuators;
 mod blocks;
 mod bodies;
 pub mod effects;
+mod end_stop;
 mod fleet;
 mod parts;
 mod plant;

@@ -8,11 +8,10 @@ use xt28_machine::Machine;
 
 use super::Lock;
 use crate::effects::{ArmEffects, SealStiction};
+use crate::end_stop::EndStop;
 
-/// Stiffness of the metal end stops, N/m (assumed).
-const STOP_STIFFNESS_N_M: f64 = 2.0e7;
-/// Damping of the metal end stops, N s/m (assumed).
-const STOP_DAMPING_N_S_M: f64 = 2.0e5;
+/// The metal stops at both ends, N/m, N s/m and m (assumed).
+const STOP: EndStop = EndStop { stiffness: 2.0e7, damping: 2.0e5, damped_at: 1e-3 };
 
 /// Parameters of one cylinder with its accumulator.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,10 +123,11 @@ impl Cylinder {
             damping_n_s_m: self.damping_n_s_m,
         };
         let beyond_m = motion.stroke_m - motion.stroke_m.clamp(0.0, self.stroke_max_m);
-        if beyond_m != 0.0 {
-            out.force_n -= STOP_STIFFNESS_N_M * beyond_m + STOP_DAMPING_N_S_M * rate_m_s;
-            out.stiffness_n_m += STOP_STIFFNESS_N_M;
-            out.damping_n_s_m += STOP_DAMPING_N_S_M;
+        let side = 1.0_f64.copysign(beyond_m);
+        if let Some(push) = STOP.push(beyond_m.abs(), side * rate_m_s) {
+            out.force_n -= side * push.force;
+            out.stiffness_n_m += push.stiffness;
+            out.damping_n_s_m += push.damping;
         }
         out
     }
@@ -195,7 +195,7 @@ mod tests {
         (soft.gas.share, soft.lock_damping.factor) = (0.7, 1.4);
         for effects in [ArmEffects::default(), soft] {
             let cylinder = Cylinder::new(&Machine::xt28(), &effects);
-            for stroke_m in [-0.01, 0.17, 0.25, 0.51] {
+            for stroke_m in [-0.01, -5e-4, 0.17, 0.25, 0.5005, 0.51] {
                 let at = |ds: f64, dv: f64| {
                     let motion =
                         CylinderMotion { stroke_m: stroke_m + ds, stroke_rate_m_s: 0.01 + dv };
@@ -207,6 +207,22 @@ mod tests {
                 let rate = -(at(0.0, d).force_n - at(0.0, -d).force_n) / (2.0 * d);
                 assert!((slope / at(0.0, 0.0).stiffness_n_m - 1.0).abs() < 1e-6);
                 assert!((rate / at(0.0, 0.0).damping_n_s_m - 1.0).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn an_end_stop_pushes_and_never_pulls() {
+        let cylinder = nominal();
+        let state = CylinderState { rest_m: 0.25, friction_n: 0.0 };
+        for (stroke_m, outward) in [(0.502, 1.0), (0.5004, 1.0), (-0.002, -1.0), (-0.0004, -1.0)] {
+            for rate_m_s in [-0.5, -0.05, 0.0, 0.05, 0.5] {
+                let motion = CylinderMotion { stroke_m, stroke_rate_m_s: rate_m_s };
+                let force_n = cylinder.force(state, &motion, DT_S).force_n;
+                let stop_n = force_n - cylinder.oil_force_n(state, &motion);
+                assert!(-outward * stop_n >= 0.0, "{stroke_m} m, {rate_m_s} m/s: {stop_n} N");
+                let leaves = outward * rate_m_s < -0.3;
+                assert_eq!(stop_n == 0.0, leaves, "{stroke_m} m, {rate_m_s} m/s: {stop_n} N");
             }
         }
     }

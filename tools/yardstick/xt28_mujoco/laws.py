@@ -9,6 +9,7 @@ from .machine import GRAVITY_M_S2, REFERENCE_STROKE_M, WHEELS, Machine
 # End stops of a cylinder (assumed, as in our plant).
 STOP_STIFFNESS_N_M = 2.0e7
 STOP_DAMPING_N_S_M = 2.0e5
+STOP_DAMPED_AT_M = 1.0e-3
 # A full pump on full motors turns the wheels at a third of full speed (sequence of displacements).
 FULL_DISPLACEMENT_SHARE = 1.0 / 3.0
 # A wheel this much off its circuit's mean is pulled back (assumed, as in our plant).
@@ -21,6 +22,16 @@ DRAG_FADE_RAD_S = 0.05
 def clamp(value: float, low: float, high: float) -> float:
     """The nearest value between two bounds."""
     return min(max(value, low), high)
+
+
+def stop_push(depth_m: float, rate_m_s: float) -> tuple[float, float, float]:
+    """Push of an end stop at a depth and a rate into it, N; its slopes. It never pulls."""
+    damping = STOP_DAMPING_N_S_M * min(depth_m / STOP_DAMPED_AT_M, 1.0)
+    push_n = STOP_STIFFNESS_N_M * depth_m + damping * rate_m_s
+    if depth_m <= 0.0 or push_n <= 0.0:
+        return 0.0, 0.0, 0.0
+    deepening = STOP_DAMPING_N_S_M / STOP_DAMPED_AT_M if depth_m < STOP_DAMPED_AT_M else 0.0
+    return push_n, STOP_STIFFNESS_N_M + deepening * rate_m_s, damping
 
 
 class ArmLocks:
@@ -45,7 +56,9 @@ class ArmLocks:
         """Stroke at a hinge angle (zero at the reference stroke, extending > 0)."""
         return self._linkage.stroke_m(self._reference_rad + hinge_rad)
 
-    def step(self, wheel: int, opening: float, hinge_rad: float, dt_s: float):
+    def step(
+        self, wheel: int, opening: float, hinge_rad: float, hinge_rad_s: float, dt_s: float
+    ):
         """Moves the valve; returns the hinge's stiffness, damping and rest, linearised here."""
         angle = self._reference_rad + hinge_rad
         lever_m = self._linkage.lever_m(angle)
@@ -56,10 +69,12 @@ class ArmLocks:
         stiffness, damping = self._stiffness, self._damping
         force_n = stiffness * (rest_m - stroke_m)
         beyond_m = stroke_m - clamp(stroke_m, 0.0, self._stroke_max_m)
-        if beyond_m:
-            force_n -= STOP_STIFFNESS_N_M * beyond_m
-            stiffness += STOP_STIFFNESS_N_M
-            damping += STOP_DAMPING_N_S_M
+        side = math.copysign(1.0, beyond_m)
+        out_n, deeper_n_m, faster_n_s_m = stop_push(abs(beyond_m), side * hinge_rad_s * lever_m)
+        # The damper of the hinge acts on the rate by itself.
+        force_n -= side * out_n - faster_n_s_m * hinge_rad_s * lever_m
+        stiffness += deeper_n_m
+        damping += faster_n_s_m
         about_hinge = stiffness * lever_m**2
         return about_hinge, damping * lever_m**2, hinge_rad + force_n * lever_m / about_hinge
 

@@ -83,9 +83,10 @@ class Vehicle:
 
     def _move_arms(self, actuation: Actuation, dt_s: float) -> None:
         model, angles = self.model, self.data.qpos[self._at["arm"]]
-        for wheel, angle in enumerate(angles):
+        rates = self.data.qvel[self._dof["arm"]]
+        for wheel, (angle, rate) in enumerate(zip(angles, rates, strict=True)):
             stiffness, damping, rest = self._arms.step(
-                wheel, actuation.arm_opening[wheel], float(angle), dt_s
+                wheel, actuation.arm_opening[wheel], float(angle), float(rate), dt_s
             )
             model.jnt_stiffness[self._hinge["arm"][wheel]] = stiffness
             model.dof_damping[self._dof["arm"][wheel]] = damping

@@ -5,7 +5,12 @@
 
 use xt28_machine::PerWheel;
 
-use crate::{Parts, Terrain, Tilt};
+use crate::end_stop::EndStop;
+use crate::{Parts, RollHinge, Terrain, Tilt};
+
+/// The roll hinge's stops, Nm/rad, Nm s/rad and rad (assumed): the machine's weight on one side's wheels
+/// twists them by a degree and a half.
+const ROLL_STOP: EndStop = EndStop { stiffness: 8.0e6, damping: 4.0e5, damped_at: 2e-3 };
 
 /// A solver of the vehicle's rigid bodies. A clone is a snapshot: it goes on bit for bit alike.
 pub trait Bodies: Clone {
@@ -60,6 +65,31 @@ impl HingeSpring {
     ) -> Self {
         let twist_rad = (torque_nm + damping_nms * motion.rate_rad_s) / stiffness_nm;
         Self { stiffness_nm, damping_nms, rest_rad: motion.angle_rad + twist_rad }
+    }
+
+    /// The same with a metal stop beyond `max_rad` on either side, linearised around this motion; within
+    /// the stops the same to the bit.
+    #[must_use]
+    pub(crate) fn stopped(self, motion: HingeMotion, max_rad: f64, stop: &EndStop) -> Self {
+        let HingeMotion { angle_rad, rate_rad_s } = motion;
+        let side = 1.0_f64.copysign(angle_rad);
+        let Some(push) = stop.push(angle_rad.abs() - max_rad, side * rate_rad_s) else {
+            return self;
+        };
+        let spring_nm = self.stiffness_nm * (self.rest_rad - angle_rad);
+        Self::through(
+            motion,
+            spring_nm - self.damping_nms * rate_rad_s - side * push.force,
+            self.stiffness_nm + push.stiffness,
+            self.damping_nms + push.damping,
+        )
+    }
+
+    /// The spring of a roll hinge in this motion, with its stops.
+    #[must_use]
+    pub(crate) fn of_roll(law: &RollHinge, motion: HingeMotion) -> Self {
+        let RollHinge { stiffness_nm, damping_nms, max_rad } = *law;
+        Self { stiffness_nm, damping_nms, rest_rad: 0.0 }.stopped(motion, max_rad, &ROLL_STOP)
     }
 }
 

@@ -5,7 +5,6 @@ mod ground_contact;
 mod hinge;
 mod hull_watch;
 mod insert;
-mod roll_hinge;
 mod rolling;
 mod shapes;
 mod spin;

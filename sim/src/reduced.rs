@@ -29,13 +29,7 @@ use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search, patch};
 use self::tree::Tree;
 use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
-use crate::{Parts, RollHinge, Terrain};
-
-/// Stiffness of the roll hinge's stops, Nm/rad (assumed): the machine's weight on one side's wheels
-/// twists them by a degree and a half.
-const ROLL_STOP_NM: f64 = 8.0e6;
-/// Damping of the stops, Nm s/rad (assumed).
-const ROLL_STOP_NMS: f64 = 4.0e5;
+use crate::{Parts, Terrain};
 
 /// The vehicle's bodies in reduced coordinates. A clone is a snapshot.
 #[derive(Debug)]
@@ -180,7 +174,8 @@ impl ReducedBodies {
             spring(ARMS + i, &loads.arm.0[i], s.arm_rad[i]);
         }
         if let Some(roll) = &self.tree.roll {
-            spring(ROLL, &roll_spring(roll, s, dt_s), s.roll_rad);
+            let motion = HingeMotion { angle_rad: s.roll_rad, rate_rad_s: s.rate[ROLL] };
+            spring(ROLL, &HingeSpring::of_roll(roll, motion), s.roll_rad);
         }
         let mut on_wheel = [spatial::ZERO; 6];
         for i in 0..6 {
@@ -221,22 +216,6 @@ impl ReducedBodies {
         for (stuck, slid) in self.search.stuck.iter_mut().zip(slid) {
             *stuck &= !slid;
         }
-    }
-}
-
-/// The roll hinge's spring toward level, or with its stop where the roll is about to go beyond.
-fn roll_spring(roll: &RollHinge, state: &State, dt_s: f64) -> HingeSpring {
-    let RollHinge { stiffness_nm, damping_nms, max_rad } = *roll;
-    let ahead_rad = state.roll_rad + dt_s * state.rate[ROLL];
-    if ahead_rad.abs() <= max_rad {
-        return HingeSpring { stiffness_nm, damping_nms, rest_rad: 0.0 };
-    }
-    // Two springs as one: both pull as hard together as each toward its own rest.
-    let both_nm = stiffness_nm + ROLL_STOP_NM;
-    HingeSpring {
-        stiffness_nm: both_nm,
-        damping_nms: damping_nms + ROLL_STOP_NMS,
-        rest_rad: ROLL_STOP_NM * max_rad.copysign(ahead_rad) / both_nm,
     }
 }
 

@@ -10,11 +10,10 @@ use xt28_machine::{PerWheel, Wheel};
 use super::hinge::{HINGE, Hinge, set_spring, signed};
 use super::hull_watch::HullWatch;
 use super::insert::{hub, insert_arm, insert_frames, new_world, origin_m, vector};
-use super::roll_hinge::roll_spring;
 use super::shapes::Ground;
 use super::spin::Spin;
 use super::tyre_contact::{Rim, Tread, TyreContact};
-use crate::bodies::{Bodies, HingeMotion, Loads, Motion, Placed};
+use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, RollHinge, Terrain};
 
 /// Longest step of the engine, s; longer ones are made of several (tyres were 8 cm off at 120 Hz).
@@ -207,7 +206,7 @@ impl RapierBodies {
 
     fn set_springs(&mut self, loads: &Loads) {
         if let Some((hinge, law)) = self.roll {
-            let spring = roll_spring(&law, self.hinge_motion(hinge).angle_rad);
+            let spring = HingeSpring::of_roll(&law, self.hinge_motion(hinge));
             set_spring(self.multibody_mut(), hinge, &spring, 1.0);
         }
         let (joints, arms, extends) = (self.joints, self.arm_hinges, self.extends);

@@ -248,11 +248,7 @@ impl Actuators {
         core::array::from_fn(|i| {
             let rate_rad_s = flow_share * asked_rad_s[i];
             self.steering.turn(&mut self.joints[i], motion.joint[i], rate_rad_s, dt_s);
-            HingeSpring {
-                stiffness_nm: self.steering.stiffness_nm(),
-                damping_nms: self.steering.damping_nms(),
-                rest_rad: self.joints[i].rest_rad,
-            }
+            self.steering.spring(&self.joints[i], motion.joint[i])
         })
     }
 

@@ -1,7 +1,10 @@
 //! What bounds the machine's motion: end stops, joint stops, saturated valves.
 
-use xt28_machine::{Machine, PerWheel, Wheel};
-use xt28_sim::{Actuation, Plant, STEP, Terrain, Vehicle, VehicleState};
+use xt28_machine::{Axle, Machine, PerWheel, Wheel};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Plant, RapierBodies, ReducedBodies, STEP, Terrain, Vehicle,
+    VehicleState,
+};
 
 /// Every state over `seconds` under one actuation, standing for a second before.
 fn hold(actuation: Actuation, stroke_m: f64, seconds: f64) -> Vec<VehicleState> {
@@ -57,6 +60,37 @@ fn joints_stop_at_their_limit_and_no_further_for_all_the_oil() {
             (limit_deg - 3.0..limit_deg + 3.0).contains(&most_deg),
             "joint {i}: {most_deg} deg"
         );
+    }
+}
+
+/// Steepest turn of the front joint, degrees, of a braked machine that stands across a steep slope: its
+/// front wheels on ice, the others where they hold.
+fn thrown_deg<B: Bodies>(angle_max_deg: f64) -> f64 {
+    let mut machine = Machine::xt28();
+    machine.articulation.angle_max_deg = angle_max_deg;
+    let mut effects = Effects::default();
+    effects.slope.grade_y_rad = 0.4;
+    for wheel in Wheel::ALL {
+        let ice = wheel.axle() == Axle::Front;
+        effects.wheels[wheel].slippery_ground.friction_factor = if ice { 0.02 } else { 3.0 };
+    }
+    let stroke_m = PerWheel::splat(0.17);
+    let mut vehicle: Vehicle<B> = Vehicle::with(&machine, &effects, &Terrain::Flat, stroke_m, STEP);
+    let steps = (0..2400).map(|_| {
+        vehicle.step(&Actuation { brake_released: false, ..Actuation::idle(1200.0) });
+        vehicle.state().joint_rad[0].abs()
+    });
+    steps.fold(0.0, f64::max).to_degrees()
+}
+
+#[test]
+fn metal_holds_a_joint_that_the_oil_lets_go() {
+    for (free_deg, stopped_deg) in [
+        (thrown_deg::<RapierBodies>(60.0), thrown_deg::<RapierBodies>(10.0)),
+        (thrown_deg::<ReducedBodies>(60.0), thrown_deg::<ReducedBodies>(10.0)),
+    ] {
+        assert!(free_deg > 15.0, "the slope does not throw it: {free_deg} deg");
+        assert!((10.0..11.0).contains(&stopped_deg), "{stopped_deg} deg");
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::Overlay;
 use xt28_sim::{
-    Actuation, Bodies, Drive, DriveInput, Effects, HingeSpring, Loads, Motion, Parts, Plant, Ramp,
+    Actuation, Bodies, Drive, DriveInput, Effects, HingeMotion, Loads, Motion, Parts, Plant, Ramp,
     RapierBodies, STEP, Steering, SteeringInput, Terrain, Vehicle, VehicleState,
 };
 
@@ -206,17 +206,10 @@ fn reproduced(effects: &Effects) {
         vehicle.step(&actuation);
         let (after, loads) = (vehicle.state(), &vehicle.bodies().loads);
         for (i, joint) in joints.iter_mut().enumerate() {
-            let input = SteeringInput {
-                opening: actuation.steer_opening[i],
-                angle_rad: before.joint_rad[i],
-                rate_rad_s: before.joint_rate_rad_s[i],
-            };
-            steering.step(joint, &input, dt_s);
-            let spring = HingeSpring {
-                stiffness_nm: steering.stiffness_nm(),
-                damping_nms: steering.damping_nms(),
-                rest_rad: joint.rest_rad,
-            };
+            let (angle_rad, rate_rad_s) = (before.joint_rad[i], before.joint_rate_rad_s[i]);
+            let opening = actuation.steer_opening[i];
+            steering.step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
+            let spring = steering.spring(joint, HingeMotion { angle_rad, rate_rad_s });
             assert_eq!(spring, loads.joint[i]);
         }
         let input = DriveInput {

@@ -3,11 +3,17 @@
 //! The same soft lock as a cylinder's: torque = k (rest - angle) - c d(angle)/dt, with the rest no
 //! further from the joint than the largest torque twists it. The damper acts on the joint's own
 //! rate, so against the scrub of the tyres the torque also bounds how fast the joint turns.
+//! Beyond the largest angle the frames meet metal: what the relief valve lets go, that holds.
 
 use xt28_machine::Machine;
 
-use crate::bodies::HingeMotion;
+use crate::bodies::{HingeMotion, HingeSpring};
 use crate::effects::{DelayLine, Lag, SteeringEffects};
+use crate::end_stop::EndStop;
+
+/// The metal between two frames, Nm/rad, Nm s/rad and rad (assumed): the whole machine pushing at half
+/// its weight on a lever of 2 m twists it by half a degree.
+const STOP: EndStop = EndStop { stiffness: 2.0e7, damping: 5.0e5, damped_at: 2e-3 };
 
 /// Parameters of one articulation joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +120,17 @@ impl Steering {
         self.turn(state, joint, rate_rad_s, dt_s);
     }
 
+    /// What acts about the joint in this motion: the oil, and beyond the largest angle the metal.
+    #[must_use]
+    pub fn spring(&self, state: &SteeringState, joint: HingeMotion) -> HingeSpring {
+        let oil = HingeSpring {
+            stiffness_nm: self.stiffness_nm,
+            damping_nms: self.damping_nms,
+            rest_rad: state.rest_rad,
+        };
+        oil.stopped(joint, self.angle_max_rad, &STOP)
+    }
+
     /// Stiffness of the held joint, Nm/rad.
     #[must_use]
     pub const fn stiffness_nm(&self) -> f64 {
@@ -167,6 +184,38 @@ mod tests {
         (0..1000).for_each(|_| steering.step(&mut state, &input, DT_S));
         let torque_nm = state.rest_rad * steering.stiffness_nm();
         assert!((torque_nm - machine.articulation.torque_max_nm).abs() < 1e-6);
+    }
+
+    #[test]
+    fn beyond_the_largest_angle_the_metal_pushes_back_and_within_it_the_oil_is_alone() {
+        let steering = steering(SteeringEffects::default());
+        let mut state = steering.straight(DT_S);
+        state.rest_rad = 0.4;
+        let max_rad = 25.0_f64.to_radians();
+        let torque_nm = |angle_rad: f64, rate_rad_s: f64| {
+            let spring = steering.spring(&state, HingeMotion { angle_rad, rate_rad_s });
+            spring.stiffness_nm * (spring.rest_rad - angle_rad) - spring.damping_nms * rate_rad_s
+        };
+        for side in [-1.0, 1.0] {
+            let within = HingeMotion { angle_rad: side * max_rad, rate_rad_s: side };
+            let spring = steering.spring(&state, within);
+            assert_eq!(
+                (spring.stiffness_nm, spring.damping_nms, spring.rest_rad),
+                (steering.stiffness_nm(), steering.damping_nms(), 0.4)
+            );
+            for rate_rad_s in [-1.0, 0.0, 0.3] {
+                for past_rad in [1e-4, 0.01, 0.05] {
+                    let (angle, rate) = (side * (max_rad + past_rad), side * rate_rad_s);
+                    let oil_nm =
+                        steering.stiffness_nm() * (0.4 - angle) - steering.damping_nms() * rate;
+                    let metal_nm = -side * (torque_nm(angle, rate) - oil_nm);
+                    assert!(metal_nm > -1e-6, "{past_rad} rad, {rate_rad_s} rad/s: {metal_nm} Nm");
+                    if rate_rad_s >= 0.0 {
+                        assert!(metal_nm > 1.9e7 * past_rad, "{past_rad} rad: {metal_nm} Nm");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

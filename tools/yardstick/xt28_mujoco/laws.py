@@ -80,7 +80,10 @@ class ArmLocks:
 
 
 class JointLocks:
-    """The two articulation joints: the valve turns a rest angle, bounded by the torque."""
+    """The two articulation joints: the valve turns a rest angle, bounded by the torque.
+
+    Our plant has metal stops beyond the largest angle; no manoeuvre comes to them.
+    """
 
     def __init__(self, machine: Machine):
         a, v = machine.articulation, machine.vehicle

@@ -67,7 +67,7 @@ impl Actuators {
             drive,
             rolling_resistance_m: PerWheel::from_fn(|wheel| {
                 let added = effects.wheels[wheel].rolling_resistance.added;
-                (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m
+                (machine.wheels.rolling_resistance + added).max(0.0) * machine.wheels.radius_m
             }),
         }
     }

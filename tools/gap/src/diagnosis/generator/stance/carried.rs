@@ -43,7 +43,8 @@ impl<'a> Carrier<'a> {
             effects,
             gauge: Gauge::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
             own_n: own_n(machine, parts, wheel),
-            resistance_m: (machine.wheels.rolling_resistance + added) * machine.wheels.radius_m,
+            resistance_m: (machine.wheels.rolling_resistance + added).max(0.0)
+                * machine.wheels.radius_m,
             friction: machine.wheels.friction,
             seal_n: seal_friction_n(s, effects, wheel),
         }

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::terrain::{Extent, Grid};
-use xt28_sim::{Actuation, Effects, Parts, Plant, STEP, Terrain, Vehicle, VehicleState};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Loads, Parts, Plant, RapierBodies, STEP, Terrain, Vehicle,
+    VehicleState,
+};
 
 /// A stump between the wheels: 0.4 m wide, top at `height_m`, from 2.6 m ahead of the front axle.
 fn stump(height_m: f64) -> Terrain {
@@ -46,6 +49,29 @@ fn the_same_stump_passes_under_a_machine_that_stands_high() {
     let states = drive(&stump(0.5), 0.3, 12.0);
     assert!(states.last().unwrap().position_m[0] > 3.0, "it got there");
     assert!(states.iter().all(|s| s.chassis_force_n == 0.0));
+}
+
+/// A machine without oil drops on its belly. At 60 Hz the engine makes a step of four: what is told is
+/// their mean, as of the wheels.
+#[test]
+fn a_long_step_tells_the_mean_force_on_the_frames() {
+    let parts = Parts::new(&Machine::xt28(), &Effects::default());
+    let limp = Loads::default();
+    let mut whole = RapierBodies::new(&parts, &Terrain::Flat, PerWheel::splat(0.17));
+    let mut quarters = whole.clone();
+    let (mut most_n, mut apart_n) = (0.0_f64, 0.0_f64);
+    for step in 0..120 {
+        whole.advance(&limp, 1.0 / 60.0);
+        let forces_n = [(); 4].map(|()| {
+            quarters.advance(&limp, 1.0 / 60.0 / 4.0);
+            quarters.motion().chassis_force_n
+        });
+        let told_n = whole.motion().chassis_force_n;
+        let mean_n = forces_n.iter().sum::<f64>() / 4.0;
+        assert!((told_n - mean_n).abs() <= 1e-9 * mean_n, "{step}: {told_n} N, not {mean_n} N");
+        (most_n, apart_n) = (most_n.max(mean_n), apart_n.max((mean_n - forces_n[3]).abs()));
+    }
+    assert!(most_n > 1e5 && apart_n > 1e4, "{most_n} N, {apart_n} N off its last quarter");
 }
 
 /// How deep the front frame's outside is in the leaning ground, m.

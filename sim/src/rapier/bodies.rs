@@ -47,7 +47,8 @@ impl Bodies for RapierBodies {
         let mut world = new_world(parts);
         let ground = world.colliders.insert(
             ColliderBuilder::new(SharedShape::new(Ground(terrain.clone())))
-                // The lower coefficient of a pair counts, and that is the tyre's.
+                // The lower coefficient of a pair counts, and that is the frame's: only frames collide with
+                // it, wheels have tyres of their own.
                 .friction(Real::MAX)
                 .collision_groups(InteractionGroups::new(
                     Group::GROUP_1,
@@ -106,13 +107,14 @@ impl Bodies for RapierBodies {
     #[allow(clippy::cast_possible_truncation)]
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
         let parts = (dt_s / LONGEST_S).ceil().max(1.0);
-        let mut ground_force_n = PerWheel::splat(0.0);
+        let (mut ground_force_n, mut chassis_force_n) = (PerWheel::splat(0.0), 0.0);
         for _ in 0..parts as u32 {
             self.sub_step(loads, dt_s / parts);
             ground_force_n =
                 PerWheel::from_fn(|w| ground_force_n[w] + self.ground_force_n[w] / parts);
+            chassis_force_n += self.chassis_force_n / parts;
         }
-        self.ground_force_n = ground_force_n;
+        (self.ground_force_n, self.chassis_force_n) = (ground_force_n, chassis_force_n);
     }
 }
 

@@ -42,7 +42,8 @@ pub struct VehicleState {
     pub pitch_rad: f64,
     /// Angular rate of the front frame in its own axes, rad/s.
     pub front_rate_rad_s: [f64; 3],
-    /// Specific force at the front frame's centre of mass in its own axes, m/s².
+    /// Specific force at the inertial unit in the front frame's axes, m/s². The unit sits where the
+    /// machine file has the frame's centre of mass, wherever that really is.
     pub front_specific_force_m_s2: [f64; 3],
     /// GNSS antenna, m.
     pub antenna_position_m: [f64; 3],

@@ -21,6 +21,9 @@ pub struct Vehicle<B = RapierBodies> {
     bodies: B,
     actuators: Actuators,
     front_com_m: [f64; 3],
+    /// From there to the inertial unit, which sits where the machine file has the centre of mass;
+    /// `None` where they are the same.
+    com_to_imu_m: Option<[f64; 3]>,
     tilt: Option<Tilt>,
     antenna_m: [f64; 3],
     step_s: f64,
@@ -59,6 +62,10 @@ impl<B: Bodies> Vehicle<B> {
             bodies,
             actuators: Actuators::new(machine, effects, stroke_m, step_s),
             front_com_m: parts.frames[0].com_m,
+            com_to_imu_m: {
+                let (imu_m, com_m) = (machine.frames.front_com_m, parts.frames[0].com_m);
+                (imu_m != com_m).then(|| core::array::from_fn(|i| imu_m[i] - com_m[i]))
+            },
             tilt: parts.tilt,
             antenna_m: {
                 let ([x, y, z], lever) =
@@ -68,7 +75,7 @@ impl<B: Bodies> Vehicle<B> {
             step_s,
             state: VehicleState::default(),
         };
-        vehicle.observe(vehicle.motion.velocity_m_s);
+        vehicle.observe(vehicle.imu_velocity_m_s(&vehicle.motion));
         vehicle
     }
 
@@ -78,7 +85,16 @@ impl<B: Bodies> Vehicle<B> {
         &self.bodies
     }
 
-    /// Writes the state that the motion shows; `before_m_s` was the front frame's velocity a step ago.
+    /// Velocity of the inertial unit in this motion, along its axes.
+    fn imu_velocity_m_s(&self, m: &Motion) -> [f64; 3] {
+        let Some(lever_m) = self.com_to_imu_m else {
+            return m.velocity_m_s;
+        };
+        let about_com = cross(m.rate_rad_s, from_frame(&m.axes, lever_m));
+        core::array::from_fn(|i| m.velocity_m_s[i] + about_com[i])
+    }
+
+    /// Writes the state that the motion shows; `before_m_s` was the inertial unit's velocity a step ago.
     ///
     /// Solvers move the machine in the ground's axes; what is true of it is said in the world's.
     fn observe(&mut self, before_m_s: [f64; 3]) {
@@ -91,6 +107,7 @@ impl<B: Bodies> Vehicle<B> {
                 (&level, level_before_m_s)
             }
         };
+        let imu_m_s = self.imu_velocity_m_s(m);
         let s = &mut self.state;
         self.actuators.observe(m, s);
         s.joint_rad = m.joint.map(|joint| joint.angle_rad);
@@ -106,12 +123,10 @@ impl<B: Bodies> Vehicle<B> {
         let into_frame = |v: [f64; 3]| m.axes.map(|axis| dot(axis, v));
         s.front_rate_rad_s = into_frame(m.rate_rad_s);
         s.front_specific_force_m_s2 = into_frame(core::array::from_fn(|i| {
-            (m.velocity_m_s[i] - before_m_s[i]) / self.step_s - DOWN_M_S2[i]
+            (imu_m_s[i] - before_m_s[i]) / self.step_s - DOWN_M_S2[i]
         }));
-        let from_frame =
-            |v: [f64; 3]| core::array::from_fn(|i| v[0] * x[i] + v[1] * y[i] + v[2] * z[i]);
-        let antenna: [f64; 3] = from_frame(self.antenna_m);
-        let com: [f64; 3] = from_frame(self.front_com_m);
+        let antenna = from_frame(&m.axes, self.antenna_m);
+        let com = from_frame(&m.axes, self.front_com_m);
         let about_com = cross(m.rate_rad_s, core::array::from_fn(|i| antenna[i] - com[i]));
         s.antenna_position_m = core::array::from_fn(|i| m.position_m[i] + antenna[i]);
         s.antenna_velocity_m_s = core::array::from_fn(|i| m.velocity_m_s[i] + about_com[i]);
@@ -122,7 +137,7 @@ impl<B: Bodies> Plant for Vehicle<B> {
     fn step(&mut self, actuation: &Actuation) {
         let loads = self.actuators.step(actuation, &self.motion, &mut self.state, self.step_s);
         self.bodies.advance(&loads, self.step_s);
-        let before_m_s = self.motion.velocity_m_s;
+        let before_m_s = self.imu_velocity_m_s(&self.motion);
         self.motion = self.bodies.motion();
         self.observe(before_m_s);
     }
@@ -130,6 +145,12 @@ impl<B: Bodies> Plant for Vehicle<B> {
     fn state(&self) -> &VehicleState {
         &self.state
     }
+}
+
+/// What has these coordinates along a frame's axes, in the axes' own world.
+fn from_frame(axes: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = axes;
+    core::array::from_fn(|i| v[0] * x[i] + v[1] * y[i] + v[2] * z[i])
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -92,6 +92,59 @@ fn a_shifted_centre_of_mass_moves_load_and_no_weight() {
     }
 }
 
+/// The inertial unit is screwed to the frame: it feels what the place feels at which the machine file has
+/// the centre of mass, wherever that has gone.
+#[test]
+fn a_shifted_centre_of_mass_leaves_the_inertial_unit_where_it_is() {
+    let machine = Machine::xt28();
+    let shift = "[[effect]]\nname = \"com-shift\"\nx_m = 0.8\ny_m = 0.4\nz_m = 0.5";
+    let slope = "\n[[effect]]\nname = \"terrain-slope\"\ngrade_x_rad = 0.05";
+    let mut vehicle: Vehicle = Vehicle::with(
+        &machine,
+        &overlay(&format!("{shift}{slope}")),
+        &Terrain::Flat,
+        PerWheel::splat(0.17),
+        STEP,
+    );
+    let lever_m: [f64; 3] =
+        core::array::from_fn(|i| machine.frames.front_com_m[i] - machine.sensors.gnss_antenna_m[i]);
+    let mut before_m_s: Option<[f64; 3]> = None;
+    for step in 0..1000 {
+        let arms = if step % 100 < 50 { 0.6 } else { -0.6 };
+        vehicle.step(&Actuation {
+            arm_opening: PerWheel([arms, -arms, arms, -arms, arms, -arms]),
+            ..Actuation::idle(1200.0)
+        });
+        let s = vehicle.state();
+        let [(sp, cp), (sr, cr), (sy, cy)] = [s.pitch_rad, s.roll_rad, s.yaw_rad].map(f64::sin_cos);
+        // Yaw, then nose up, then right side high.
+        let axes = [
+            [cp * cy, cp * sy, sp],
+            [-sy * cr + cy * sp * sr, cy * cr + sy * sp * sr, -sr * cp],
+            [-sy * sr - cy * sp * cr, cy * sr - sy * sp * cr, cr * cp],
+        ];
+        let world = |v: [f64; 3]| -> [f64; 3] {
+            core::array::from_fn(|i| v[0] * axes[0][i] + v[1] * axes[1][i] + v[2] * axes[2][i])
+        };
+        let ([wx, wy, wz], [x, y, z]) = (world(s.front_rate_rad_s), world(lever_m));
+        let swing_m_s = [wy * z - wz * y, wz * x - wx * z, wx * y - wy * x];
+        let now_m_s: [f64; 3] = core::array::from_fn(|i| s.antenna_velocity_m_s[i] + swing_m_s[i]);
+        if let Some(before_m_s) = before_m_s.replace(now_m_s) {
+            for (axis, felt_m_s2) in axes.iter().zip(s.front_specific_force_m_s2) {
+                let along = |i: usize| {
+                    let up_m_s2 = if i == 2 { GRAVITY_M_S2 } else { 0.0 };
+                    let gained_m_s: f64 = now_m_s[i] - before_m_s[i];
+                    axis[i] * (gained_m_s / STEP.as_secs_f64() + up_m_s2)
+                };
+                let wanted_m_s2 = along(0) + along(1) + along(2);
+                // The engine's axes are single precision.
+                let off_m_s2 = (felt_m_s2 - wanted_m_s2).abs();
+                assert!(off_m_s2 < 2e-3, "{step}: {felt_m_s2}, not {wanted_m_s2} m/s2");
+            }
+        }
+    }
+}
+
 /// On ground that rises by a grade the IMU sees the lean, the receiver the climb, the wheels less
 /// normal load; the ground's own terms (strokes, joints) stay.
 #[test]

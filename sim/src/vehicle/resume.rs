@@ -50,7 +50,7 @@ impl<B: Placed> Vehicle<B> {
         let ground_force_n = vehicle.bodies.motion().ground_force_n;
         vehicle.motion = Motion { ground_force_n, ..vehicle.bodies.motion() };
         vehicle.state = *measured;
-        vehicle.observe(vehicle.motion.velocity_m_s);
+        vehicle.observe(vehicle.imu_velocity_m_s(&vehicle.motion));
         vehicle.state.front_specific_force_m_s2 = measured.front_specific_force_m_s2;
         vehicle
     }

@@ -19,7 +19,7 @@ impl<B: Placed + Send + 'static> Track for Vehicle<B> {
         let ground_force_n = self.motion.ground_force_n;
         self.motion = Motion { ground_force_n, ..self.bodies.motion() };
         self.state = *measured;
-        self.observe(self.motion.velocity_m_s);
+        self.observe(self.imu_velocity_m_s(&self.motion));
         self.state.front_specific_force_m_s2 = measured.front_specific_force_m_s2;
     }
 

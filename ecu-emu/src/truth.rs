@@ -7,7 +7,7 @@ use xt28_sim::VehicleState;
 
 /// Column names, units in the name.
 pub const TRUTH_HEADER: &str = "time_s,x_m,y_m,z_m,yaw_rad,roll_rad,pitch_rad,\
-ground_fr_n,ground_fl_n,ground_mr_n,ground_ml_n,ground_br_n,ground_bl_n";
+ground_fr_n,ground_fl_n,ground_mr_n,ground_ml_n,ground_br_n,ground_bl_n,chassis_n";
 
 /// Writes one row, newline included.
 ///
@@ -26,5 +26,5 @@ pub fn write_truth_row(out: &mut impl Write, now: SimTime, s: &VehicleState) -> 
     for wheel in Wheel::ALL {
         write!(out, ",{:.0}", s.ground_force_n[wheel])?;
     }
-    writeln!(out)
+    writeln!(out, ",{:.0}", s.chassis_force_n)
 }

@@ -1,7 +1,9 @@
-//! What must hold of a run, each judged on the recorded bus alone (and on the truth where given).
+//! What must hold of a run, each judged on the recorded bus alone (and on the truth where given). Only
+//! grounding takes the truth: no sensor feels it.
 
 mod arm_speed;
 mod attitude;
+mod clears_ground;
 mod ecu_state;
 mod ground_pressure;
 mod holds_still;
@@ -26,6 +28,7 @@ use crate::{Bound, Finding, Scenario, Trace, Truth};
 
 pub use arm_speed::ArmSpeed;
 pub use attitude::RollPeak;
+pub use clears_ground::ClearsGround;
 pub use ecu_state::{Ecu, ReachesState};
 pub use ground_pressure::EvenGroundPressure;
 pub use holds_still::HoldsStill;
@@ -77,6 +80,8 @@ pub enum Expectation {
     ReportsTrouble(ReportsTrouble),
     /// The machine leans by an angle.
     Leans(Leans),
+    /// Nothing but wheels touches the ground; of a simulated machine alone.
+    ClearsGround(ClearsGround),
 }
 
 /// A recorded run and what it ran: all that an expectation may look at.
@@ -113,6 +118,7 @@ impl Expectation {
             Self::HoldsStill(e) => e.judge(evidence),
             Self::ReportsTrouble(e) => e.judge(evidence),
             Self::Leans(e) => e.judge(evidence),
+            Self::ClearsGround(e) => e.judge(evidence),
         }
     }
 }

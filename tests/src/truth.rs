@@ -12,6 +12,9 @@ use crate::Series;
 pub struct Truth {
     /// Vertical force of the ground on each wheel, N.
     pub ground_force_n: Series<PerWheel<f64>>,
+    /// Force of the ground on anything but the wheels, N. Empty where a file has no such column: older
+    /// emulators did not write it.
+    pub chassis_force_n: Series<f64>,
 }
 
 /// Why a truth file was refused.
@@ -43,6 +46,7 @@ impl Truth {
     /// Adds the plant's state at `at_s`.
     pub fn push(&mut self, at_s: f64, state: &VehicleState) {
         self.ground_force_n.push(at_s, state.ground_force_n);
+        self.chassis_force_n.push(at_s, state.chassis_force_n);
     }
 
     /// From the CSV that the emulator writes; its time zero is `start_s` on the run's clock. A last
@@ -77,7 +81,11 @@ impl Truth {
             for wheel in Wheel::ALL {
                 force_n[wheel] = number(&format!("ground_{}_n", wheel.name().to_lowercase()))?;
             }
-            truth.ground_force_n.push(number("time_s")? + start_s, force_n);
+            let at_s = number("time_s")? + start_s;
+            truth.ground_force_n.push(at_s, force_n);
+            if columns.iter().any(|column| column == "chassis_n") {
+                truth.chassis_force_n.push(at_s, number("chassis_n")?);
+            }
         }
         Ok(truth)
     }
@@ -91,7 +99,8 @@ mod tests {
 
     fn csv() -> String {
         let ground_force_n = PerWheel([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        let state = VehicleState { ground_force_n, ..VehicleState::default() };
+        let state =
+            VehicleState { ground_force_n, chassis_force_n: 700.0, ..VehicleState::default() };
         let mut csv = format!("{TRUTH_HEADER}\n").into_bytes();
         for tick in 0..3 {
             write_truth_row(&mut csv, SimTime::from_millis(tick * 10), &state).unwrap();
@@ -106,6 +115,15 @@ mod tests {
         assert_eq!(samples.len(), 3);
         assert_eq!(samples[0].at_s, -2.0);
         assert_eq!(samples[0].value, PerWheel([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+        assert_eq!(truth.chassis_force_n.samples()[2].value, 700.0);
+    }
+
+    #[test]
+    fn a_file_from_before_the_frames_were_written_is_read_without_them() {
+        let older = csv().replace(",chassis_n", "").replace(",700\n", "\n");
+        let truth = Truth::read(older.as_bytes(), "t.csv", 0.0).unwrap();
+        assert_eq!(truth.ground_force_n.samples().len(), 3);
+        assert!(truth.chassis_force_n.samples().is_empty());
     }
 
     #[test]

@@ -5,15 +5,19 @@ use std::path::Path;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_scenarios::trace::{Attitude, DriveCommand, EcuState, Motion};
-use xt28_scenarios::{Evidence, Finding, Scenario, Trace};
+use xt28_scenarios::{Evidence, Finding, Scenario, Trace, Truth};
 
 /// What the one expectation `toml` finds in `trace`.
 fn judge(toml: &str, trace: &Trace) -> Vec<Finding> {
+    judge_with(toml, trace, None)
+}
+
+fn judge_with(toml: &str, trace: &Trace, truth: Option<&Truth>) -> Vec<Finding> {
     let text = format!("title = \"t\"\npolicy = \"hold\"\nduration_s = 10\n[[expect]]\n{toml}\n");
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     let scenario = Scenario::parse(&text, Path::new("t.toml"), none).expect("a good scenario");
     let machine = Machine::xt28();
-    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth: None };
+    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth };
     scenario.expectations[0].judge(&evidence)
 }
 
@@ -248,6 +252,30 @@ fn the_hardest_knock_lies_between_its_bounds() {
     assert_eq!(verdicts(expect, &knock(5.0, 130.0)), [false]);
     assert_eq!(verdicts(expect, &knock(1.0, 100.0)), [false], "outside the window");
     assert_eq!(verdicts(expect, &Trace::default()), [false]);
+}
+
+#[test]
+fn frames_clear_the_ground_only_where_the_truth_says_so() {
+    let expect = "clears-ground = { from_s = 2, to_s = 8 }";
+    let some = "clears-ground = { from_s = 2, to_s = 8, at_most_kn = 5 }";
+    let grounding = |at: f64, force_n: f64| {
+        let mut truth = Truth::default();
+        for at_s in ticks() {
+            let touches = (at_s - at).abs() < 0.006;
+            truth.chassis_force_n.push(at_s, if touches { force_n } else { 0.0 });
+        }
+        truth
+    };
+    let passed = |toml: &str, truth: &Truth| {
+        judge_with(toml, &Trace::default(), Some(truth)).iter().all(Finding::passed)
+    };
+    assert!(passed(expect, &grounding(5.0, 0.0)));
+    assert!(!passed(expect, &grounding(5.0, 4e3)), "a touch is a touch");
+    assert!(passed(some, &grounding(5.0, 4e3)));
+    assert!(!passed(some, &grounding(5.0, 6e3)));
+    assert!(passed(expect, &grounding(1.0, 4e3)), "outside the window");
+    assert!(!passed(expect, &Truth::default()), "a truth without the frames");
+    assert_eq!(verdicts(expect, &Trace::default()), [false], "no truth at all");
 }
 
 #[test]

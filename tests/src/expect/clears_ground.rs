@@ -1,0 +1,45 @@
+//! Grounding, the paper's terminal condition: nothing but wheels may touch the ground.
+
+use serde::Deserialize;
+
+use super::Evidence;
+use crate::series::{Sample, mean};
+use crate::{Bound, Finding};
+
+/// The greatest force of the ground on anything but the wheels over a window. No bus carries it, so only
+/// a simulator's truth tells.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClearsGround {
+    /// Start of the window, s.
+    pub from_s: f64,
+    /// End of the window, s.
+    pub to_s: f64,
+    /// Greatest force, kN; 0 or left out where nothing may touch at all.
+    #[serde(default)]
+    pub at_most_kn: f64,
+}
+
+const N_PER_KN: f64 = 1e3;
+
+impl ClearsGround {
+    pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
+        let wanted = Bound::AtMost(self.at_most_kn);
+        let what = "greatest force of the ground on the frames, true";
+        let Some(truth) = evidence.truth else {
+            let why = "the bus does not carry it; it takes a simulated machine";
+            return vec![Finding::missing(what, wanted, "kN", why)];
+        };
+        let forces = truth.chassis_force_n.between(self.from_s, self.to_s);
+        let hardest = |a: Sample<f64>, b: Sample<f64>| if b.value > a.value { b } else { a };
+        vec![match forces.iter().copied().reduce(hardest) {
+            Some(Sample { at_s, value }) if value > 0.0 => {
+                let mean_kn = mean(forces, |force_n| *force_n).unwrap_or(0.0) / N_PER_KN;
+                Finding::of(what, value / N_PER_KN, wanted, "kN")
+                    .noting(format!("at {at_s:.2} s; {mean_kn:.2} in the mean"))
+            }
+            Some(_) => Finding::of(what, 0.0, wanted, "kN"),
+            None => Finding::missing(what, wanted, "kN", "no truth of the frames in the window"),
+        }]
+    }
+}

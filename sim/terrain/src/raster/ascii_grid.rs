@@ -9,8 +9,8 @@ struct Header {
     rows: Option<f64>,
     x: Option<f64>,
     y: Option<f64>,
-    /// Whether `x` and `y` are the middle of the first cell rather than its corner.
-    centre: bool,
+    /// Whether `x` and `y` are each the middle of the first cell rather than its corner.
+    centre: [bool; 2],
     dx: Option<f64>,
     dy: Option<f64>,
     nodata: Option<f64>,
@@ -22,13 +22,14 @@ impl Header {
         let place = match key.to_ascii_lowercase().as_str() {
             "ncols" => &mut self.columns,
             "nrows" => &mut self.rows,
-            "xllcorner" => &mut self.x,
-            "yllcorner" => &mut self.y,
-            "xllcenter" | "xllcentre" => {
-                self.centre = true;
+            key @ ("xllcorner" | "xllcenter" | "xllcentre") => {
+                self.centre[0] = key != "xllcorner";
                 &mut self.x
             }
-            "yllcenter" | "yllcentre" => &mut self.y,
+            key @ ("yllcorner" | "yllcenter" | "yllcentre") => {
+                self.centre[1] = key != "yllcorner";
+                &mut self.y
+            }
             "cellsize" => {
                 self.dy = Some(value);
                 &mut self.dx
@@ -54,6 +55,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Raster, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
         format!("byte {} is no text; an ASCII grid is plain text", error.valid_up_to())
     })?;
+    // Some editors mark a text as UTF-8 with a character that is none of it.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut header = Header::default();
     let mut lines = text.lines().zip(1_usize..).peekable();
     while let Some((line, number)) = lines.peek() {
@@ -91,10 +94,10 @@ fn heights<'a>(
     let rows = count(need(header.rows, "nrows")?, "nrows")?;
     let size = check_size(columns, rows, bytes)?;
     let spacing_m = [need(header.dx, "cellsize")?, need(header.dy, "cellsize")?];
-    let shift = if header.centre { 0.0 } else { 0.5 };
+    let shift = header.centre.map(|centre| if centre { 0.0 } else { 0.5 });
     let first_m = [
-        need(header.x, "xllcorner")? + shift * spacing_m[0],
-        need(header.y, "yllcorner")? + shift * spacing_m[1],
+        need(header.x, "xllcorner")? + shift[0] * spacing_m[0],
+        need(header.y, "yllcorner")? + shift[1] * spacing_m[1],
     ];
     let promised = size[0] * size[1];
     let mut height_m = Vec::new();
@@ -155,6 +158,23 @@ mod tests {
         // Heights may be broken into lines at will.
         let broken = SMALL.replace("5 6 7\n1 2", "5\n6 7 1\n\n2");
         assert_eq!(read(broken.as_bytes()).unwrap().height_m[3..], [5.0, 6.0, 7.0]);
+    }
+
+    #[test]
+    fn each_axis_says_for_itself_where_its_first_cell_is() {
+        for (from, to, first_m) in
+            [("xllcorner", "xllcenter", [100.0, 201.0]), ("yllcorner", "yllcentre", [101.0, 200.0])]
+        {
+            assert_eq!(read(SMALL.replace(from, to).as_bytes()).unwrap().first_m, first_m, "{to}");
+        }
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_part_of_the_header() {
+        let marked = format!("\u{feff}{SMALL}");
+        let (marked, plain) = (read(marked.as_bytes()).unwrap(), read(SMALL.as_bytes()).unwrap());
+        assert_eq!((marked.first_m, marked.height_m.len()), (plain.first_m, 6));
+        assert_eq!(marked.height_m[3..], plain.height_m[3..]);
     }
 
     #[test]

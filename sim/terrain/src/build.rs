@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use crate::canvas::Canvas;
-use crate::{Plane, Slope, Terrain, TerrainError, TerrainSpec};
+use crate::{Fault, Plane, Slope, Terrain, TerrainError, TerrainSpec};
 
 impl TerrainSpec {
     /// The ground.
     ///
     /// # Errors
     /// [`TerrainError::Read`] or [`TerrainError::HeightMap`] for a file that it names,
-    /// [`TerrainError::Layer`] for what [`Self::check`] refuses.
+    /// [`TerrainError::Layer`] for what [`Self::check`] refuses, and for boulders that find no room.
     pub fn build(&self) -> Result<Terrain, TerrainError> {
         self.check()?;
         let plane = self.slope.as_ref().map(Slope::plane);
@@ -27,8 +27,12 @@ impl TerrainSpec {
                 + sum(&self.bumps, |bumps| bumps.height_m(x, y))
                 + sum(&self.course, |course| course.height_m(x, y))
         });
-        for boulders in &self.boulders {
-            boulders.add_to(&mut canvas, self.grid);
+        for (index, boulders) in self.boulders.iter().enumerate() {
+            boulders.add_to(&mut canvas, self.grid).map_err(|problem| Fault {
+                table: "boulders",
+                index,
+                problem,
+            })?;
         }
         for height_map in &self.height_map {
             height_map.add_to(&mut canvas)?;

@@ -127,6 +127,7 @@ impl TerrainSpec {
         each("bumps", &self.bumps, Bumps::check)?;
         each("course", &self.course, Course::check)?;
         each("boulders", &self.boulders, Boulders::check)?;
+        each("boulders", &self.boulders, |layer| layer.check_room(self.grid))?;
         each("height_map", &self.height_map, HeightMap::check)?;
         each("grid", &[self.grid], Extent::check)?;
         each("map", std::slice::from_ref(&self.map), MapSpec::check)

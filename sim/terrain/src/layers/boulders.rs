@@ -90,10 +90,23 @@ impl Boulder {
 impl Boulders {
     /// The boulders as they lie in `extent`.
     ///
-    /// Fewer than asked for only if the clear area leaves all but no room.
+    /// Fewer than asked for only if the clear area leaves all but no room: of a density those that
+    /// fitted, of a count those before the first that did not.
     #[must_use]
     pub fn placed(&self, extent: Extent) -> Vec<Boulder> {
-        (0..self.number(extent)).filter_map(|index| self.draw(extent, index)).collect()
+        let drawn = (0..self.number(extent)).map(|index| self.draw(extent, index));
+        if self.count.is_some() {
+            return drawn.map_while(|boulder| boulder).collect();
+        }
+        drawn.flatten().collect()
+    }
+
+    /// Whether some boulder of this reach fits on the grid beside the clear area.
+    fn fits(&self, extent: Extent, reach_m: f64) -> bool {
+        let covers = |clear: [f64; 2], grid: [f64; 2]| {
+            clear[0] - reach_m <= grid[0] && grid[1] <= clear[1] + reach_m
+        };
+        !(covers(self.clear.x_m, extent.x_m) && covers(self.clear.y_m, extent.y_m))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -111,6 +124,9 @@ impl Boulders {
         let radius_m = [between(self.radius_m), between(self.radius_m)];
         let height_m = between(self.height_m);
         let (sin, cos) = libm::sincos(between([0.0, PI]));
+        if !self.fits(extent, radius_m[0].max(radius_m[1])) {
+            return None;
+        }
         (0..DRAWS_MAX)
             .map(|_| {
                 let centre_m = [between(extent.x_m), between(extent.y_m)];
@@ -124,15 +140,38 @@ impl Boulders {
     }
 
     /// Adds them to a canvas; where boulders overlap, the higher counts.
-    pub(crate) fn add_to(&self, canvas: &mut Canvas, extent: Extent) {
+    ///
+    /// # Errors
+    /// A sentence, where fewer than `count` found room.
+    pub(crate) fn add_to(&self, canvas: &mut Canvas, extent: Extent) -> Result<(), String> {
         let mut top_m = vec![0.0_f64; canvas.len()];
-        for boulder in self.placed(extent) {
+        let boulders = self.placed(extent);
+        if let Some(count) = self.count.filter(|&count| boulders.len() < count as usize) {
+            let found = boulders.len();
+            return Err(format!(
+                "only {found} of count = {count} boulders find room beside clear; \
+                 give fewer or smaller ones, a smaller clear area or a greater grid"
+            ));
+        }
+        for boulder in boulders {
             canvas.add_within(boulder.bounds(), |index, x_m, y_m| {
                 let before_m = top_m[index];
                 top_m[index] = before_m.max(boulder.height_m(x_m, y_m));
                 top_m[index] - before_m
             });
         }
+        Ok(())
+    }
+
+    /// Says where the clear area leaves no room on the grid for any of a count.
+    ///
+    /// # Errors
+    /// A sentence that names the keys.
+    pub(crate) fn check_room(&self, extent: Extent) -> Result<(), &'static str> {
+        if self.count.is_some_and(|count| count > 0) && !self.fits(extent, self.radius_m[0]) {
+            return Err("clear and radius_m leave no room for any of count on the grid");
+        }
+        Ok(())
     }
 
     /// Says what no boulders can be.
@@ -192,7 +231,7 @@ mod tests {
 
     fn grid(boulders: &Boulders) -> crate::Grid {
         let mut canvas = Canvas::new(Extent::default());
-        boulders.add_to(&mut canvas, Extent::default());
+        boulders.add_to(&mut canvas, Extent::default()).unwrap();
         canvas.into_grid([0.0; 2])
     }
 
@@ -260,7 +299,33 @@ mod tests {
         // No room at all: none, and it ends.
         let all = Boulders { clear: Extent { x_m: [-99.0, 99.0], y_m: [-99.0, 99.0] }, ..FOREST };
         assert_eq!(Boulders { count: Some(5), ..all }.placed(Extent::default()), []);
+        let (count, density_per_m2) = (None, Some(0.1));
+        assert_eq!(Boulders { count, density_per_m2, ..all }.placed(Extent::default()), []);
         let twice = Boulders { density_per_m2: Some(0.1), ..FOREST };
         assert_eq!(twice.check(), Err("give count or density_per_m2, one of the two"));
+    }
+
+    #[test]
+    fn a_count_without_room_is_refused_at_once() {
+        let grid = Extent::default();
+        let strip = |beside_m: f64| Boulders {
+            count: Some(COUNT_MAX),
+            clear: Extent { x_m: [grid.x_m[0] + beside_m, grid.x_m[1]], y_m: grid.y_m },
+            ..FOREST
+        };
+        // Not even the smallest of 0.3 m fits; then the smallest do and the others do not; then all do.
+        let spec = |beside_m| crate::TerrainSpec {
+            boulders: vec![strip(beside_m)],
+            ..crate::TerrainSpec::default()
+        };
+        let fault = spec(0.2).check().unwrap_err().to_string();
+        assert!(fault.contains("[boulders]: clear and radius_m leave no room"), "{fault}");
+        assert!(spec(0.5).check().is_ok());
+        let error = spec(0.5).build().unwrap_err().to_string();
+        assert!(
+            error.contains("[boulders]: only ") && error.contains("of count = 100000"),
+            "{error}"
+        );
+        assert_eq!(Boulders { count: Some(50), ..strip(5.0) }.placed(grid).len(), 50);
     }
 }

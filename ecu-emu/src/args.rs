@@ -104,8 +104,9 @@ fn quirk(text: &str) -> Result<(String, bool), String> {
 
 fn stroke_mm(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(mm) if (0.0..=500.0).contains(&mm) => Ok(mm),
-        _ => Err("a stroke is 0 to 500 mm".to_owned()),
+        // How far a cylinder goes, the machine file says.
+        Ok(mm) if mm.is_finite() && mm >= 0.0 => Ok(mm),
+        _ => Err("a stroke is a number of mm, no less than zero".to_owned()),
     }
 }
 

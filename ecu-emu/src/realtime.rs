@@ -88,6 +88,14 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
         Some(path) => Terrain::load(path)?,
         None => Terrain::Flat,
     };
+    let most_mm = machine.arms.stroke_max_m * 1000.0;
+    if args.stroke_mm > most_mm {
+        let asked_mm = args.stroke_mm;
+        return Err(format!(
+            "--stroke-mm {asked_mm}: this machine's cylinders go from 0 to {most_mm} mm (arms.stroke_max_m)"
+        )
+        .into());
+    }
     let mut config = EmulatorConfig::new(machine, terrain, args.seed);
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
     if let Some(path) = &args.effects {
@@ -147,5 +155,29 @@ fn listen_until_due(
             return Ok(());
         }
         bus.wait(left)?;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[test]
+    fn a_start_beyond_the_machines_own_stroke_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("m.toml");
+        let shorter =
+            Machine::builtin_text().replace("stroke_max_m = 0.50 ", "stroke_max_m = 0.30 ");
+        std::fs::write(&file, shorter).unwrap();
+        let with = |machine: &str, mm: &str| {
+            let args = ["ecu-emu", "--bus", "vcan0", "--stroke-mm", mm, "--machine", machine];
+            config(&Args::parse_from(args)).map(|config| config.stroke_m[xt28_machine::Wheel::Fr])
+        };
+        let file = file.to_str().unwrap();
+        assert_eq!(with(file, "300").unwrap(), 0.3);
+        let error = with(file, "400").unwrap_err().to_string();
+        assert!(error.starts_with("--stroke-mm 400: ") && error.contains("300 mm"), "{error}");
     }
 }

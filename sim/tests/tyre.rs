@@ -79,8 +79,8 @@ fn soft_tyres_show_in_pitch_and_only_where_they_are() {
     assert!(right.roll_rad.to_degrees() < -1.0, "the right side sinks: {}", right.roll_rad);
 }
 
-/// From the neutral stiffness down nothing jumps: the first step away from it, where the block takes
-/// over from the engine's contact, changes less than halving the stiffness does.
+/// From the neutral stiffness down nothing jumps: the first step away from it changes next to nothing,
+/// also where a machine without the effect ends.
 #[test]
 fn softening_sets_in_without_a_jump() {
     let machine = Machine::xt28();

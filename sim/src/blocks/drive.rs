@@ -3,6 +3,10 @@
 //! A circuit is a differential (paper 3.2): its motors share the torque by their displacement, and
 //! the displacement-weighted mean of their speeds follows the pump, giving way under torque. The engine
 //! holds the mean of all six without steady error, within its torque and power.
+//!
+//! Pressure here is a convention, the one of the logs: proportional to the circuit's torque alone, 350 bar
+//! above charge at a wheel's largest. Displacement is left out of it on purpose, so a pressure tells the
+//! torque whatever the motors are set to.
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
@@ -14,7 +18,7 @@ const ENGINE_ANSWER_S: f64 = 0.2;
 const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 /// Charge pressure of the closed circuits, Pa (assumed).
 const CHARGE_PRESSURE_PA: f64 = 25.0e5;
-/// Pressure above charge at the largest wheel torque, Pa (assumed).
+/// Pressure above charge at the largest wheel torque, Pa (convention, see above).
 const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
 /// A wheel this much off its circuit's mean is pulled back, rad/s (assumed: 4 rpm).
 const SLIP_FREE_RAD_S: f64 = 4.0 * core::f64::consts::TAU / 60.0;

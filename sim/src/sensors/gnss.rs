@@ -13,7 +13,7 @@ use crate::{Effects, VehicleState};
 /// One fix of the antenna's position in the local frame: x east, y north, z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GnssFix {
-    /// When the antenna was there.
+    /// When the receiver gives it. The antenna was there then, or `gnss-latency` earlier.
     pub at: SimTime,
     /// Position, m.
     pub position_m: [f64; 3],

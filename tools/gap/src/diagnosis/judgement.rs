@@ -11,19 +11,18 @@ mod causes;
 mod notes;
 mod objection;
 mod places;
-mod scales;
 
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
 use super::excitation::not_testable;
 use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
+use super::scales::{Chances, Grounds, Scales};
 use super::verdict::{Diagnosis, NotTestable, Verdict};
 use beginning::is_told;
 use causes::causes;
 use notes::notes;
 use places::{places, unexplained};
-pub use scales::{Chances, Grounds, Scales};
 
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug, Default)]
@@ -104,7 +103,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
         cause.begins = None;
     }
-    let verdict = chances.verdict();
+    let verdict = likeliest(&chances);
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
     let held_speak = verdict == Verdict::Unknown && findings.objection().is_held;
@@ -131,6 +130,17 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();
     diagnosis.not_testable.retain(|one| !stood.contains(&one.effect));
     diagnosis
+}
+
+/// The likeliest of the three answers that a log can tell apart.
+fn likeliest(chances: &Chances) -> Verdict {
+    if chances.none >= chances.known.max(chances.unknown) {
+        Verdict::None
+    } else if chances.unknown > chances.known {
+        Verdict::Unknown
+    } else {
+        Verdict::Effect
+    }
 }
 
 /// The effects that those runs cannot show that `are` asked for.
@@ -178,6 +188,16 @@ mod tests {
             ..Findings::default()
         };
         judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
+    }
+
+    #[test]
+    fn the_likeliest_answer_is_the_verdict_even_where_none_has_half() {
+        let of = |none, unknown, known| {
+            likeliest(&Chances { none, unseen: 1.0 - none - unknown - known, unknown, known })
+        };
+        assert_eq!(of(0.41, 0.36, 0.21), Verdict::None);
+        assert_eq!(of(0.30, 0.36, 0.33), Verdict::Unknown);
+        assert_eq!(of(0.30, 0.33, 0.36), Verdict::Effect);
     }
 
     #[test]

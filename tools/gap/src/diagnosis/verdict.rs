@@ -3,7 +3,7 @@
 use serde::{Serialize, Serializer};
 use xt28_sim::effects::{Block, Effect, Parameter, Scope};
 
-use super::judgement::Grounds;
+use super::scales::Grounds;
 
 /// The whole answer to one machine's logs. Serialises to the form of `--json`.
 #[derive(Clone, Debug, Serialize)]

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use xt28_sim::effects::Scope;
 
 use super::Findings;
-use super::scales::turned;
 use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::scales::turned;
 use crate::diagnosis::verdict::{Beginning, Cause, Estimate};
 
 /// Evidence of a second cause beside the first at which it and nothing are as likely, nats, and how

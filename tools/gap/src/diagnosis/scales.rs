@@ -6,8 +6,6 @@
 
 use serde::Serialize;
 
-use crate::diagnosis::verdict::Verdict;
-
 /// What a verdict rests on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Grounds {
@@ -44,20 +42,6 @@ pub struct Chances {
     pub unknown: f64,
     /// An effect of the catalogue is there, and shows.
     pub known: f64,
-}
-
-impl Chances {
-    /// The likeliest of the three that a log can tell apart.
-    #[must_use]
-    pub fn verdict(&self) -> Verdict {
-        if self.none >= self.known.max(self.unknown) {
-            Verdict::None
-        } else if self.unknown > self.known {
-            Verdict::Unknown
-        } else {
-            Verdict::Effect
-        }
-    }
 }
 
 impl Scales {
@@ -103,12 +87,6 @@ mod tests {
                 let all = [chances.none, chances.unseen, chances.unknown, chances.known];
                 assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-12);
                 assert!(all.iter().all(|p| (0.0..=1.0).contains(p)), "{all:?}");
-                let said = match chances.verdict() {
-                    Verdict::None => chances.none,
-                    Verdict::Unknown => chances.unknown,
-                    Verdict::Effect => chances.known,
-                };
-                assert!(all.iter().all(|p| *p <= said), "{chances:?}");
             }
         }
     }

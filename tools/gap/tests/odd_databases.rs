@@ -125,7 +125,12 @@ fn a_name_in_a_mapping_file_that_the_database_has_not_is_refused_with_its_line()
             assert!(error.starts_with(&wanted), "{error}");
         }
     }
-    let decoder = decode("[signals]\n\"position.east\" = \"PosFront.FR\"\n").unwrap();
+    // The same bits under another name.
+    let front = " SG_ FL : 16|16@1+ (1,0) [0|0] \"mm\" gateway\n";
+    let dbc = DBC.replace(front, &format!("{front}{}", front.replace("FL : 16", "East : 0")));
+    let mapping = "[signals]\n\"position.east\" = \"PosFront.East\"\n";
+    let mapping = Mapping::parse(mapping, Path::new("m.toml")).unwrap();
+    let decoder = Decoder::parse(&dbc, Path::new("field.dbc"), &mapping).unwrap();
     let log = FieldLog::read(log().as_bytes(), "a.log", &decoder, false).unwrap();
     assert_eq!(log.series(Channel::East), log.series(Channel::Stroke(Wheel::Fr)));
 }

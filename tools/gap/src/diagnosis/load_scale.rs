@@ -7,11 +7,13 @@ use xt28_machine::{Machine, Wheel};
 
 use super::signals::Signals;
 
-/// Loads below this, as a root mean square, tell no scale, N.
-const LOADED_N: f64 = 5.0e3;
-/// How many times more or less than what is told the pressures may make: areas of another machine, not another
-/// unit.
-const TIMES_MAX: f64 = 3.0;
+/// Loads below this, as a root mean square, tell no scale, N: a sensor with a bias of 1 MPa makes 8 kN.
+const LOADED_N: f64 = 1.0e4;
+/// How many times more or less than what is told the pressures may make: areas of another machine or a sensor
+/// that is off, not another unit.
+const TIMES_MAX: f64 = 5.0;
+/// Wheels that are off where a database is to blame: a frame has the pressures of two.
+const WHEELS_MIN: usize = 2;
 
 /// Pressures that do not make the loads that a log tells.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +22,8 @@ pub struct LoadScale {
     pub wheels: Vec<(Wheel, f64)>,
 }
 
-/// The wheels whose pressures make another load than the frames tell, beyond any area of a cylinder. The ECU
+/// The wheels whose pressures make another load than the frames tell, beyond any area of a cylinder, where it is
+/// more than one. The ECU
 /// makes one of the other, so that they agree on every machine, sound or not.
 #[must_use]
 pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
@@ -30,7 +33,7 @@ pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
         is_off.then_some((wheel, times))
     };
     let wheels: Vec<_> = Wheel::ALL.into_iter().filter_map(off).collect();
-    (!wheels.is_empty()).then_some(LoadScale { wheels })
+    (wheels.len() >= WHEELS_MIN).then_some(LoadScale { wheels })
 }
 
 /// What the pressures of `wheel` make of its load, by least squares; nothing where they are not logged, or
@@ -53,5 +56,37 @@ impl fmt::Display for LoadScale {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let each = self.wheels.iter().map(|(wheel, times)| format!("{times:.2} on {wheel}"));
         write!(f, "{}", each.collect::<Vec<_>>().join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Channel, Series, Terrain};
+
+    /// A machine whose arms carry 30 kN each, on pressures that make so many times that on some wheels.
+    fn carrying(off: &[Wheel], times: f64) -> [Signals; 1] {
+        let ten =
+            |value: f64| -> Series { (0..1000).map(|i| (f64::from(i) * 0.01, value)).collect() };
+        let bore_pa = 30e3 / Machine::xt28().arms.area_bore_m2;
+        let reads = |channel: Channel| match channel {
+            Channel::CylinderLoad(_) => 30e3,
+            Channel::BorePressure(wheel) if off.contains(&wheel) => times * bore_pa,
+            Channel::BorePressure(_) => bore_pa,
+            _ => 0.0,
+        };
+        let all = Channel::all().into_iter().map(|channel| (channel, ten(reads(channel))));
+        [Signals::of_series("made up", &all.collect(), 10.0, Terrain::Flat).unwrap()]
+    }
+
+    #[test]
+    fn another_unit_is_told_and_a_sensor_or_another_cylinder_is_not() {
+        let front = [Wheel::Fr, Wheel::Fl];
+        let found = load_scale(&carrying(&front, 0.1)).expect("a factor of ten");
+        assert_eq!(found.to_string(), "0.10 on FR, 0.10 on FL");
+        assert!(load_scale(&carrying(&front, 14.5)).is_some(), "psi for bar");
+        assert_eq!(load_scale(&carrying(&front, 0.5)), None, "a cylinder of half the area");
+        assert_eq!(load_scale(&carrying(&front[..1], 0.0)), None, "one sensor is dead");
+        assert_eq!(load_scale(&carrying(&[], 1.0)), None);
     }
 }

@@ -30,6 +30,8 @@ pub struct Report {
     /// Rows that only the diagnosis has.
     own: Scores,
     statements: Vec<Statement>,
+    /// The scales that would suit these cases best, beside those in use.
+    scales: Vec<Suited>,
     sweep: Vec<Withheld>,
     refused: Vec<Refused>,
 }
@@ -49,8 +51,10 @@ impl Report {
         let statements = said.collect();
         let own = own_scores(&cases);
         let (seal, salt) = (examination.seal().to_string(), examination.salt());
+        let outcome = |case: &Judged| (case.examined.diagnosis.grounds, case.truth.kind);
+        let scales = suited(&cases.iter().map(outcome).collect::<Vec<_>>());
         let (sweep, refused) = (Vec::new(), Vec::new());
-        Self { seal, salt, cases, columns, own, statements, sweep, refused }
+        Self { seal, salt, cases, columns, own, statements, scales, sweep, refused }
     }
 
     /// The same with what came of withholding each effect.
@@ -172,20 +176,13 @@ impl Report {
         )
     }
 
-    /// The scales that would suit these cases best, beside those in use.
-    fn scales(&self) -> Vec<Suited> {
-        let outcome = |case: &Judged| (case.examined.diagnosis.grounds, case.truth.kind);
-        suited(&self.cases.iter().map(outcome).collect::<Vec<_>>())
-    }
-
     fn write_scales(&self, to: &mut String) -> std::fmt::Result {
-        let scales = self.scales();
-        if scales.is_empty() {
+        if self.scales.is_empty() {
             return Ok(());
         }
         writeln!(to, "{:<36} {:<10} suits these best", "scale of probabilities", "in use")?;
-        for Suited { name, in_use, best } in scales {
-            writeln!(to, "{name:<36} {in_use:<10} {}", cell(&best))?;
+        for Suited { name, in_use, best } in &self.scales {
+            writeln!(to, "{name:<36} {in_use:<10} {}", cell(best))?;
         }
         writeln!(to)
     }
@@ -229,7 +226,7 @@ impl Report {
             "own": table(&self.own),
             "reliability": self.reliability(),
             "calibration_error_by_chance": error_by_chance(&self.statements),
-            "scales": self.scales(),
+            "scales": self.scales,
             "cases": cases.collect::<Vec<_>>(),
             "withheld": self.sweep,
             "refused": self.refused,

@@ -22,9 +22,8 @@ pub struct LoadScale {
     pub wheels: Vec<(Wheel, f64)>,
 }
 
-/// The wheels whose pressures make another load than the frames tell, beyond any area of a cylinder, where it is
-/// more than one. The ECU
-/// makes one of the other, so that they agree on every machine, sound or not.
+/// The wheels whose pressures make another load than the frames tell, beyond any area of a cylinder, where it
+/// is more than one. The ECU makes one of the other, so that they agree on every machine, sound or not.
 #[must_use]
 pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
     let off = |wheel: Wheel| {
@@ -40,16 +39,21 @@ pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
 /// where it carries nothing.
 #[allow(clippy::cast_precision_loss)]
 fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
-    let arms = Machine::xt28().arms;
     let (mut both, mut told, mut count) = (0.0, 0.0, 0_usize);
     for s in runs {
-        let [bore, rod] = &s.chamber_pa[wheel];
-        for ((bore, rod), load_n) in bore.iter().zip(rod).zip(&s.cylinder_load_n[wheel]) {
-            let made_n = bore * arms.area_bore_m2 - rod * arms.area_rod_m2;
+        for (made_n, load_n) in pressed_n(s, wheel).zip(&s.cylinder_load_n[wheel]) {
             (both, told, count) = (both + made_n * load_n, told + load_n * load_n, count + 1);
         }
     }
     (told > LOADED_N * LOADED_N * count.max(1) as f64).then(|| both / told)
+}
+
+/// What the pressures of `wheel` make, N, sample by sample; nothing where they are not logged.
+pub(super) fn pressed_n(s: &Signals, wheel: Wheel) -> impl Iterator<Item = f64> {
+    let arms = Machine::xt28().arms;
+    let [bore, rod] = &s.chamber_pa[wheel];
+    let both = bore.iter().zip(rod);
+    both.map(move |(bore, rod)| bore * arms.area_bore_m2 - rod * arms.area_rod_m2)
 }
 
 impl fmt::Display for LoadScale {

@@ -3,9 +3,10 @@
 
 use core::fmt;
 
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 
+use super::load_scale::pressed_n;
 use super::signals::{DT_S, Samples, Signals};
 
 /// How fast an arm follows its target, s: 1 / (0.004 per mm times 212 mm/s), the paper's PI.
@@ -91,13 +92,10 @@ fn mispressed(runs: &[Signals]) -> Option<Swap> {
 /// zero where no log has pressures.
 #[allow(clippy::cast_precision_loss)]
 fn pressures_off_n(runs: &[Signals], wheel: Wheel, other: Wheel) -> f64 {
-    let arms = Machine::xt28().arms;
     let (mut squares, mut count) = (0.0, 0_usize);
     for s in runs {
-        let [bore, rod] = &s.chamber_pa[wheel];
-        let pressures = bore.iter().zip(rod).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
-        for ((bore, rod), load_n) in pressures {
-            let made_n = bore * arms.area_bore_m2 - rod * arms.area_rod_m2;
+        let pressures = pressed_n(s, wheel).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
+        for (made_n, load_n) in pressures {
             (squares, count) = (squares + (made_n - load_n).powi(2), count + 1);
         }
     }

@@ -61,9 +61,9 @@ pub fn suited(outcomes: &[Outcome]) -> Vec<Suited> {
         return Vec::new();
     }
     let mut best = likeliest(outcomes);
-    let drawn = drawn_again(outcomes, DRAWS, likeliest);
+    let mut drawn = drawn_again(outcomes, DRAWS, likeliest);
     let each = |(name, of): Scale| {
-        let mut values: Vec<f64> = drawn.clone().iter_mut().map(|scales| *of(scales)).collect();
+        let mut values: Vec<f64> = drawn.iter_mut().map(|scales| *of(scales)).collect();
         Suited {
             name,
             in_use: *of(&mut Scales::IN_USE.clone()),

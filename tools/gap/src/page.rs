@@ -16,6 +16,7 @@ mod heat;
 mod horizon;
 mod html;
 mod machine_view;
+mod strip;
 mod svg;
 mod table;
 mod text;

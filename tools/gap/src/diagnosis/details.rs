@@ -5,6 +5,7 @@
 //! shows what the simulator does as it stands, and what it does with the causes put in.
 
 mod horizons;
+mod over_time;
 mod regimes;
 mod traces;
 mod whole;
@@ -19,6 +20,7 @@ use super::verdict::Diagnosis;
 use crate::GapError;
 
 pub use horizons::{Curve, HORIZONS_S};
+pub use over_time::{CELL_S, Strip};
 pub use regimes::{OF_ARM, REGIMES, Row};
 pub use traces::Trace;
 
@@ -32,6 +34,10 @@ pub struct Details {
     pub runs: Vec<RunLine>,
     /// Root mean square of every generator's residual in each of [`REGIMES`], floors.
     pub map: Vec<Row>,
+    /// The same over the time of every run.
+    pub strips: Vec<Strip>,
+    /// Time of every run at which the causes begin, s; 0 where they were there from its start.
+    pub since_s: f64,
     /// How every generator's error grows with time: first where the verdict sees most, then the largest.
     pub horizons: Vec<Curve>,
     /// Where the gap is largest on runs that were not fitted, before and after; on fitted ones where
@@ -89,6 +95,8 @@ impl Details {
                 })
                 .collect(),
             map: regimes::map(inquiry, &pairs),
+            strips: over_time::strips(&pairs),
+            since_s: diagnosis.since_s(),
             horizons: horizons::curves(&pairs, diagnosis),
             traces: traces::traces(inquiry, &pairs),
             whole: whole::whole(inquiry, diagnosis)?,

@@ -4,7 +4,7 @@
 use core::fmt::Write as _;
 
 use super::colour::{AFTER, BEFORE, INK};
-use super::{assumptions, caption, heat, horizon, table, trace};
+use super::{assumptions, caption, heat, horizon, strip, table, trace};
 use crate::diagnosis::details::Trace;
 use crate::diagnosis::{Details, Diagnosis};
 
@@ -17,6 +17,12 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
         "<h2>Where: gap of each block by what the machine did</h2>{}\
          <p class=\"small\">Each block of the simulator driven with measured inputs; root mean square of its error in noise floors (1 is what two models of a sound machine differ), before tolerances are taken out. Blank: did not happen.</p>",
         heat::draw(details)
+    );
+    let _ = write!(
+        out,
+        "<h2>Where: gap of each block over the time of each run</h2>{}<p class=\"small\">The same colours, every two seconds{}.</p>",
+        strip::draw(details),
+        if details.since_s > 0.0 { "; the line is where the causes begin" } else { "" }
     );
     if !diagnosis.places.is_empty() {
         let _ = write!(out, "<h2>Where: the largest gaps</h2>{}", table::places(diagnosis));

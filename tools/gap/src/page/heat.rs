@@ -6,7 +6,7 @@ use crate::diagnosis::Details;
 use crate::diagnosis::details::{OF_ARM, REGIMES};
 
 const NAMES_PX: f64 = 150.0;
-const CELL: [f64; 2] = [53.0, 19.0];
+const CELL: [f64; 2] = [45.0, 19.0];
 const HEAD_PX: f64 = 46.0;
 
 /// The drawing: a row a block, a column a regime, and one for everything.

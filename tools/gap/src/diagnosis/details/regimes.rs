@@ -8,14 +8,16 @@ use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{DT_S, Signals};
 
 /// Regimes of the arm that a row is about, the first of all; other rows have none there.
-pub const OF_ARM: usize = 5;
+pub const OF_ARM: usize = 7;
 /// What a machine may be doing, in the order of a row's cells.
-pub const REGIMES: [&str; 10] = [
+pub const REGIMES: [&str; 12] = [
     "valve shut",
     "extends",
     "retracts",
     "near an end",
     "hangs free",
+    "light load",
+    "heavy load",
     "several arms",
     "stands",
     "changes speed",
@@ -27,6 +29,8 @@ pub const REGIMES: [&str; 10] = [
 const SHUT: f64 = 0.01;
 /// Closer than this to an end of its stroke an arm may meet it, m.
 const NEAR_END_M: f64 = 0.02;
+/// Shares of its usual load below which an arm carries little, and above which much.
+const USUAL: [f64; 2] = [0.8, 1.2];
 /// Slower than this the machine stands, m/s.
 const STANDS_M_S: f64 = 0.05;
 /// A change of speed above this is not a steady drive, m/s2.
@@ -51,14 +55,15 @@ pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<Row> {
     for first in pairs.iter().filter(|pair| pair.run == 0) {
         let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
         let wheel = wheel_of(first.generator);
+        let usual_n = wheel.map_or(f64::NAN, |wheel| usual_load_n(inquiry, wheel));
         let gap = |regime: Option<usize>| {
             rms(same().flat_map(|pair| {
                 let signals = &inquiry.runs[pair.run].signals;
                 let machine = &inquiry.machine;
                 pair.before.iter().flat_map(move |residual| {
                     residual.values.iter().enumerate().filter_map(move |(k, value)| {
-                        let within = regime
-                            .is_none_or(|regime| is(signals, machine, wheel, instant(k), regime));
+                        let at = Instant { signals, machine, wheel, usual_n, i: instant(k) };
+                        let within = regime.is_none_or(|regime| at.is(regime));
                         within.then_some(*value)
                     })
                 })
@@ -80,30 +85,72 @@ fn instant(k: usize) -> usize {
     k * STRIDE + STRIDE / 2
 }
 
-/// Whether the machine is in a regime at sample `i` of a log.
-fn is(s: &Signals, machine: &Machine, wheel: Option<Wheel>, i: usize, regime: usize) -> bool {
-    if i >= s.len {
-        return false;
+/// The load in the middle of all that an arm carried off the air, over all runs, N; not a number where
+/// it never did.
+fn usual_load_n(inquiry: &Inquiry, wheel: Wheel) -> f64 {
+    let loads = inquiry.runs.iter().flat_map(|run| &run.signals.cylinder_load_n[wheel]);
+    let mut loads: Vec<f64> = loads.copied().filter(|load| *load >= UNLOADED_N).collect();
+    loads.sort_by(f64::total_cmp);
+    loads.get(loads.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// A moment of one log, as one generator sees it.
+struct Instant<'a> {
+    signals: &'a Signals,
+    machine: &'a Machine,
+    /// The wheel whose arm the generator drives.
+    wheel: Option<Wheel>,
+    /// What that arm usually carries, N.
+    usual_n: f64,
+    /// Sample of the log.
+    i: usize,
+}
+
+impl Instant<'_> {
+    /// Whether the machine is in a regime, by its place in [`REGIMES`].
+    fn is(&self, regime: usize) -> bool {
+        if self.i >= self.signals.len {
+            return false;
+        }
+        if regime < OF_ARM {
+            return self.wheel.is_some_and(|wheel| self.arm_is(wheel, regime));
+        }
+        self.machine_is(regime - OF_ARM)
     }
-    let arm = |of: &dyn Fn(Wheel) -> bool| wheel.is_some_and(of);
-    let radius_m = machine.wheels.radius_m;
-    let speed_m_s = s.mean_wheel_speed_rad_s(i) * radius_m;
-    let (from, to) = (i.saturating_sub(20), (i + 20).min(s.len - 1));
-    let change_m_s2 = (s.mean_wheel_speed_rad_s(to) - s.mean_wheel_speed_rad_s(from)) * radius_m
-        / ((to - from).max(1) as f64 * DT_S);
-    let (stands, steady) = (speed_m_s.abs() < STANDS_M_S, change_m_s2.abs() < STEADY_M_S2);
-    let bent = s.joint_rad.iter().any(|joint| joint[i].abs() > BEND_RAD);
-    let ends = NEAR_END_M..machine.arms.stroke_max_m - NEAR_END_M;
-    match regime {
-        0 => arm(&|w| s.opening[w][i].abs() < SHUT),
-        1 => arm(&|w| s.opening[w][i] >= SHUT),
-        2 => arm(&|w| s.opening[w][i] <= -SHUT),
-        3 => arm(&|w| !ends.contains(&s.stroke_m[w][i])),
-        4 => arm(&|w| s.cylinder_load_n[w][i] < UNLOADED_N),
-        5 => s.opening.iter().filter(|(_, opening)| opening[i].abs() >= SHUT).count() > 1,
-        6 => stands && steady,
-        7 => !steady,
-        8 => !stands && steady && !bent,
-        _ => !stands && steady && bent,
+
+    /// Whether an arm is in one of its regimes.
+    fn arm_is(&self, wheel: Wheel, regime: usize) -> bool {
+        let opening = self.signals.opening[wheel][self.i];
+        let load_n = self.signals.cylinder_load_n[wheel][self.i];
+        let ends = NEAR_END_M..self.machine.arms.stroke_max_m - NEAR_END_M;
+        match regime {
+            0 => opening.abs() < SHUT,
+            1 => opening >= SHUT,
+            2 => opening <= -SHUT,
+            3 => !ends.contains(&self.signals.stroke_m[wheel][self.i]),
+            4 => load_n < UNLOADED_N,
+            5 => load_n >= UNLOADED_N && load_n < USUAL[0] * self.usual_n,
+            _ => load_n > USUAL[1] * self.usual_n,
+        }
+    }
+
+    /// Whether the machine is in one of its regimes.
+    fn machine_is(&self, regime: usize) -> bool {
+        let (s, i) = (self.signals, self.i);
+        let radius_m = self.machine.wheels.radius_m;
+        let speed_m_s = s.mean_wheel_speed_rad_s(i) * radius_m;
+        let (from, to) = (i.saturating_sub(20), (i + 20).min(s.len - 1));
+        let change_m_s2 = (s.mean_wheel_speed_rad_s(to) - s.mean_wheel_speed_rad_s(from))
+            * radius_m
+            / ((to - from).max(1) as f64 * DT_S);
+        let (stands, steady) = (speed_m_s.abs() < STANDS_M_S, change_m_s2.abs() < STEADY_M_S2);
+        let bent = s.joint_rad.iter().any(|joint| joint[i].abs() > BEND_RAD);
+        match regime {
+            0 => s.opening.iter().filter(|(_, opening)| opening[i].abs() >= SHUT).count() > 1,
+            1 => stands && steady,
+            2 => !steady,
+            3 => !stands && steady && !bent,
+            _ => !stands && steady && bent,
+        }
     }
 }

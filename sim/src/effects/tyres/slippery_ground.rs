@@ -39,7 +39,9 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             name: "slip",
             neutral: 0.0,
             tolerance: 0.03,
-            range: [-0.1, 0.9],
+            // Below nothing only as far as a wheel may be larger than believed: what travels further than its
+            // wheels say by more does not slip.
+            range: [-0.04, 0.9],
             slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].slippery_ground.slip),
         },
     ],

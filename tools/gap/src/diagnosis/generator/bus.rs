@@ -16,7 +16,7 @@ use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// What is expected of the row of commands less what was seen, mean of arms' and drive's; smaller by as
-/// much as chance is larger than the floor; `NaN` where nobody sent any.
+/// much as chance, and what another law would make, is larger than the floor; `NaN` where nobody sent any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BusErrors {
     /// Share of frames that are missing.
@@ -37,6 +37,9 @@ pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
 const ANOTHER: f64 = 1.5;
 /// Within this time of a window's beginning and end commands are taken to fill it, s.
 const BEGINS_S: f64 = 0.03;
+/// Share of what lateness and loss are expected to make of the places and the intervals by which another law of
+/// theirs would make more or less: few frames late by much, late by no more than some time, or lost in a row.
+const ANOTHER_LAW: f64 = 0.2;
 /// Windows of the row on which an expectation stands: chance leaves 0.2 % to a loss of a tenth.
 const ROW: u32 = 200;
 
@@ -59,13 +62,15 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
             .command_times_s
             .each_ref()
             .map(|times| Row::of_window(times, window as f64, period_s));
-        let less = |of: fn(&Row) -> f64, signal: Signal| {
-            let chance = of(&expected.chance) / signal.floor().sigma;
-            (of(&expected.mean) - (of(&seen[0]) + of(&seen[1])) / 2.0) / chance.hypot(1.0)
+        let less = |of: fn(&Row) -> f64, signal: Signal, law: f64| {
+            let (mean, chance) = (of(&expected.mean), of(&expected.chance));
+            let floor = signal.floor().sigma;
+            let doubt = (chance / floor).hypot(law * mean / floor).hypot(1.0);
+            (mean - (of(&seen[0]) + of(&seen[1])) / 2.0) / doubt
         };
-        fill(&mut errors.missing, less(|row| row.missing, Signal::BusMissing));
-        fill(&mut errors.out_of_place, less(|row| row.out_of_place, Signal::BusPlace));
-        fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven));
+        fill(&mut errors.missing, less(|row| row.missing, Signal::BusMissing, 0.0));
+        fill(&mut errors.out_of_place, less(|row| row.out_of_place, Signal::BusPlace, ANOTHER_LAW));
+        fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven, ANOTHER_LAW));
     }
     errors
 }
@@ -206,6 +211,42 @@ mod tests {
             let largest = errors.missing.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
             assert!(largest < 1.5, "{period_s}: {largest}");
         }
+    }
+
+    /// The least that any lateness of ours leaves of frames late by another law, floors.
+    fn left_by(late_s: impl Fn(&mut ChaCha8Rng) -> f64) -> f64 {
+        let mut signals = commanded(PERIOD_S);
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut times_s: Vec<f64> =
+            (0..1000).map(|k| (f64::from(k) + 0.5) * PERIOD_S + late_s(&mut random)).collect();
+        times_s.sort_by(f64::total_cmp);
+        signals.command_times_s = [times_s.clone(), times_s];
+        let left = |latest_ms: i32| {
+            let mut effects = Effects::default();
+            effects.bus.command_jitter.latest_s = f64::from(latest_ms) * 1e-3;
+            let errors = bus_errors(&signals, &effects);
+            let rms = |all: &Samples| {
+                let known: Vec<f64> = all.iter().copied().filter(|e| e.is_finite()).collect();
+                (known.iter().map(|e| e * e).sum::<f64>() / known.len() as f64).sqrt()
+            };
+            rms(&errors.out_of_place).max(rms(&errors.uneven))
+        };
+        (0..80).map(left).fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn lateness_by_another_law_is_lateness_still() {
+        let reordered = left_by(|random| 0.04 * random.random::<f64>());
+        let rarely =
+            left_by(
+                |random| {
+                    if random.random::<f64>() < 0.5 { 0.03 * random.random::<f64>() } else { 0.0 }
+                },
+            );
+        let exponential = left_by(|random| -0.01 * (1.0 - random.random::<f64>()).ln());
+        let worst = reordered.max(rarely).max(exponential);
+        assert!(worst < 1.5, "{reordered:.2} {rarely:.2} {exponential:.2}");
+        assert!(left_by(|_| 0.0) < 0.5);
     }
 
     #[test]

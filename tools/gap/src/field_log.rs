@@ -156,6 +156,12 @@ impl FieldLog {
         Self { name: name.into(), series, faults: Vec::new(), frames: 0, duration_s }
     }
 
+    /// The same log with other samples, as it would be had its sensors read something else.
+    #[must_use]
+    pub fn with_series(self, series: BTreeMap<Channel, Series>) -> Self {
+        Self { series, ..self }
+    }
+
     /// The log's name, as in errors.
     #[must_use]
     pub fn name(&self) -> &str {

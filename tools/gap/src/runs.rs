@@ -121,6 +121,14 @@ impl RunSet {
         &self.runs
     }
 
+    /// The same runs with each log as `seen`.
+    #[must_use]
+    pub fn map_logs(mut self, seen: impl Fn(FieldLog) -> FieldLog) -> Self {
+        let again = |run: KnownRun| KnownRun { log: seen(run.log), ..run };
+        self.runs = self.runs.into_iter().map(again).collect();
+        self
+    }
+
     /// What was taken for granted, and the faults of every log; whole sentences.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {

@@ -26,6 +26,10 @@ pub(crate) struct Check {
     /// NAME.toml in `answers` beside the folder or within it
     #[arg(long, value_name = "DIR")]
     set: Option<PathBuf>,
+    /// Instead of the cases of the folder, examine N that are made of them: a fault of reading is laid over the
+    /// logs of a machine that is sound or has one effect; what, where and how large is drawn from --seed
+    #[arg(long, value_name = "N", requires = "set", conflicts_with = "cases")]
+    grafts: Option<NonZeroUsize>,
     /// How many cases to examine: 40 are drawn when left out; with --set the first N of the folder in the
     /// order of their names, all of them when left out
     #[arg(long, value_name = "N")]
@@ -104,9 +108,10 @@ impl Check {
     /// The cases to examine; refuses to write over any file of the set, also of cases that are left out.
     fn sources(&self, seal: Option<&PathBuf>) -> Result<Vec<Source>, Failure> {
         let wanted = self.cases.map(NonZeroUsize::get);
-        let mut sources = match &self.set {
-            Some(folder) => Source::in_folder(folder)?,
-            None => Source::drawn(wanted.unwrap_or(DRAWN), self.seed),
+        let mut sources = match (&self.set, self.grafts) {
+            (Some(folder), Some(count)) => Source::grafted(folder, count.get(), self.seed)?,
+            (Some(folder), None) => Source::in_folder(folder)?,
+            (None, _) => Source::drawn(wanted.unwrap_or(DRAWN), self.seed),
         };
         let outputs = Outputs::new([
             ("--json", self.json_file()),

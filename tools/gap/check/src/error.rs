@@ -52,6 +52,11 @@ pub enum CheckError {
         /// Its `about.toml`.
         path: PathBuf,
     },
+    /// A set has no machine whose readings could be made wrong.
+    #[error(
+        "no case to lay a fault over; a set needs a machine that is sound, or has one effect that is no sensor's"
+    )]
+    NoBase,
     /// The answers are not those that were sealed.
     #[error(
         "the seal is broken: the answers are not those sealed before the diagnosis as {seal}; check again and leave them alone"

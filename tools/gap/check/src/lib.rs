@@ -2,7 +2,7 @@
 //!
 //! | Step | Where |
 //! |---|---|
-//! | cases, drawn or in a folder | [`Source`] |
+//! | cases, drawn or in a folder, or made of those | [`Source`], [`Graft`] |
 //! | answers sealed, every case diagnosed, the seal opened | [`Examination`] |
 //! | what is so, and what was said | [`Truth`], [`Reply`] |
 //! | plain rules on the same logs | [`BASELINES`] |
@@ -16,6 +16,7 @@ mod coverage;
 mod crew;
 mod error;
 mod examination;
+mod graft;
 mod oracle;
 mod reply;
 mod report;
@@ -28,6 +29,7 @@ mod wilson;
 pub use baselines::{BASELINES, Baseline};
 pub use error::CheckError;
 pub use examination::{Clock, Examination, Examined, Judged, Options, Refused};
+pub use graft::Graft;
 pub use reply::{Named, Reply};
 pub use report::Report;
 pub use score::{

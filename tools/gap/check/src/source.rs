@@ -13,6 +13,7 @@ use xt28_gap_plants::{Case, Kind};
 use xt28_machine::Machine;
 
 use crate::CheckError;
+use crate::graft::{Graft, grafted};
 
 /// File with what one may know of a case.
 const ABOUT: &str = "about.toml";
@@ -28,6 +29,17 @@ pub enum Source {
         folder: PathBuf,
         /// The answer.
         answer: PathBuf,
+    },
+    /// Such a folder with a fault of reading laid over its logs.
+    Grafted {
+        /// Name of the case.
+        name: String,
+        /// Logs, DBC and `about.toml`.
+        folder: PathBuf,
+        /// The fault.
+        graft: Graft,
+        /// Text of its answer.
+        answer: String,
     },
 }
 
@@ -78,6 +90,18 @@ impl Source {
         cases.into_iter().map(with_answer).collect()
     }
 
+    /// `count` cases made of those in `folder`, each with a fault of reading laid over its logs: one thing
+    /// wrong on a sound machine, two on one with an effect that is no sensor's, or something that is in no
+    /// catalogue on a sound one.
+    ///
+    /// # Errors
+    /// As [`Source::in_folder`], [`CheckError::Answer`], and [`CheckError::NoBase`] for a folder without such
+    /// machines.
+    pub fn grafted(folder: &Path, count: usize, seed: u64) -> Result<Vec<Self>, CheckError> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        grafted(&Self::in_folder(folder)?, count, &mut random)
+    }
+
     /// Its name.
     #[must_use]
     pub fn name(&self) -> String {
@@ -86,6 +110,7 @@ impl Source {
             Self::Folder { folder, .. } => {
                 folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
             }
+            Self::Grafted { name, .. } => name.clone(),
         }
     }
 
@@ -95,13 +120,18 @@ impl Source {
         match self {
             Self::Drawn(case) => PathBuf::from(format!("{}.answer.toml", case.name())),
             Self::Folder { answer, .. } => answer.clone(),
+            Self::Grafted { name, .. } => PathBuf::from(format!("{name}.answer.toml")),
         }
     }
 
     /// The files that it is read from; what an `about.toml` that cannot be read would name is none.
     #[must_use]
     pub fn files(&self) -> Vec<PathBuf> {
-        let Self::Folder { folder, answer } = self else { return Vec::new() };
+        let (folder, answer) = match self {
+            Self::Drawn(_) => return Vec::new(),
+            Self::Folder { folder, answer } => (folder, Some(answer)),
+            Self::Grafted { folder, .. } => (folder, None),
+        };
         let path = folder.join(ABOUT);
         let about = About::load(&path).ok();
         let named = about.iter().flat_map(|about| {
@@ -109,7 +139,7 @@ impl Source {
             logs.chain(&about.dbc).map(|file| folder.join(file))
         });
         let beside: Vec<PathBuf> = named.collect();
-        [vec![path, answer.clone()], beside].concat()
+        std::iter::once(path).chain(answer.cloned()).chain(beside).collect()
     }
 
     /// Text of its answer, to be sealed and not to be looked at.
@@ -122,6 +152,7 @@ impl Source {
             Self::Folder { answer, .. } => {
                 fs::read_to_string(answer).map_err(|source| CheckError::read(answer, source))
             }
+            Self::Grafted { answer, .. } => Ok(answer.clone()),
         }
     }
 
@@ -132,7 +163,8 @@ impl Source {
     pub fn inquiry(&self) -> Result<Inquiry, CheckError> {
         match self {
             Self::Drawn(case) => Ok(Inquiry::new(Machine::xt28(), runs_of(case)?)),
-            Self::Folder { folder, .. } => inquiry_in(folder),
+            Self::Folder { folder, .. } => inquiry_in(folder, |log| log),
+            Self::Grafted { folder, graft, .. } => inquiry_in(folder, |log| graft.over(log)),
         }
     }
 }
@@ -166,7 +198,8 @@ fn runs_of(case: &Case) -> Result<Vec<FieldRun>, CheckError> {
     Ok(runs)
 }
 
-fn inquiry_in(folder: &Path) -> Result<Inquiry, CheckError> {
+/// What is asked of the logs in `folder`, each as `seen`.
+fn inquiry_in(folder: &Path, seen: impl Fn(FieldLog) -> FieldLog) -> Result<Inquiry, CheckError> {
     let path = folder.join(ABOUT);
     let about = About::load(&path)?;
     let dbc = about.dbc.as_ref().ok_or_else(|| CheckError::NoDatabase { path: path.clone() })?;
@@ -176,7 +209,7 @@ fn inquiry_in(folder: &Path) -> Result<Inquiry, CheckError> {
         return Err(CheckError::NoRuns { path });
     }
     let known = Known { about: Some(&path), terrain: None };
-    let runs = RunSet::load(&logs, &decoder, known, false)?;
+    let runs = RunSet::load(&logs, &decoder, known, false)?.map_logs(seen);
     let choice = runs.choose(&[], &[])?;
     Ok(runs.into_inquiry(Machine::xt28(), &choice, false)?)
 }

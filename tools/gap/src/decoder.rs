@@ -58,7 +58,7 @@ impl Decoder {
                 known: channel.dimension().units(),
             })?;
             let tap = decoder.messages.entry(message.id).or_insert_with(|| Tap::new(message));
-            tap.add(channel, signal, si_per * source.scale);
+            tap.add(channel, signal, [si_per * source.scale, si_per * source.offset]);
         }
         Ok(decoder)
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{LoadScale, Swap};
+use crate::diagnosis::{LoadScale, OddHeading, Swap};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -244,6 +244,14 @@ pub enum GapError {
     LoadScale {
         /// Where, and by how much.
         scale: LoadScale,
+    },
+    /// The heading is not the way in which the fixes go.
+    #[error(
+        "the receiver's heading should count counter-clockwise from east, as its fixes go, but {odd} (docs/diagnosis.md)"
+    )]
+    HeadingSense {
+        /// How it counts.
+        odd: OddHeading,
     },
     /// Commands and readings are not of the same wheels.
     #[error(

@@ -1,6 +1,7 @@
 //! A field log as time series: candump, plain or gzipped, or MCAP, read through the log's own DBC.
 
 mod attendance;
+mod gaps;
 mod gzip;
 mod intake;
 mod order;

@@ -32,6 +32,8 @@ pub struct Source {
     pub unit: Option<String>,
     /// Multiplies the physical value, -1 where the signal counts the other way.
     pub scale: f64,
+    /// Added to that, in `unit`: where the signal counts from another zero.
+    pub offset: f64,
 }
 
 #[derive(Deserialize)]
@@ -41,7 +43,7 @@ struct MappingFile {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "expected \"Message.Signal\" or { signal, unit, scale }")]
+#[serde(untagged, expecting = "expected \"Message.Signal\" or { signal, unit, scale, offset }")]
 enum Entry {
     Name(String),
     Table(EntryTable),
@@ -53,6 +55,7 @@ struct EntryTable {
     signal: String,
     unit: Option<String>,
     scale: Option<f64>,
+    offset: Option<f64>,
 }
 
 impl Default for Mapping {
@@ -145,12 +148,16 @@ impl Mapping {
 impl Entry {
     fn source(self) -> Result<Source, String> {
         let table = match self {
-            Self::Name(signal) => EntryTable { signal, unit: None, scale: None },
+            Self::Name(signal) => EntryTable { signal, unit: None, scale: None, offset: None },
             Self::Table(table) => table,
         };
         let scale = table.scale.unwrap_or(1.0);
         if !scale.is_finite() || scale == 0.0 {
             return Err(format!("scale = {scale} says nothing; use a finite number other than 0"));
+        }
+        let offset = table.offset.unwrap_or(0.0);
+        if !offset.is_finite() {
+            return Err(format!("offset = {offset} says nothing; use a finite number"));
         }
         match table.signal.split_once('.') {
             Some((message, signal)) if !message.is_empty() && !signal.is_empty() => Ok(Source {
@@ -158,6 +165,7 @@ impl Entry {
                 signal: signal.to_owned(),
                 unit: table.unit,
                 scale,
+                offset,
             }),
             _ => Err(format!("`{}` is not of the form \"Message.Signal\"", table.signal)),
         }
@@ -210,6 +218,8 @@ mod tests {
         assert!(twice.starts_with(both), "{twice}");
         let scale = refused("[signals]\n\"stroke.FR\" = { signal = \"A.B\", scale = 0 }\n");
         assert!(scale.contains("scale = 0"), "{scale}");
+        let offset = refused("[signals]\n\"stroke.FR\" = { signal = \"A.B\", offset = inf }\n");
+        assert!(offset.contains("offset = inf"), "{offset}");
     }
 
     proptest! {

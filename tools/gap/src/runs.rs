@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::{FieldRun, Inquiry, Signals, load_scale, swapped_wheels};
+use crate::diagnosis::{FieldRun, Inquiry, Signals, load_scale, odd_heading, swapped_wheels};
 use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
@@ -155,12 +155,24 @@ impl RunSet {
         Ok(inquiry)
     }
 
+    /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
+    ///
+    /// # Errors
+    /// [`GapError::LoadScale`] and [`GapError::HeadingSense`].
+    pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+        if let Some(scale) = load_scale(runs) {
+            return Err(GapError::LoadScale { scale });
+        }
+        odd_heading(runs).map_or(Ok(()), |odd| Err(GapError::HeadingSense { odd }))
+    }
+
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may
     /// look swapped.
     ///
     /// # Errors
     /// [`GapError::Unmeasured`] names what a log has not, [`GapError::LoadScale`] the wheels whose pressures
-    /// and loads do not belong together, [`GapError::WheelOrder`] those that look swapped.
+    /// and loads do not belong together, [`GapError::HeadingSense`] how the heading counts,
+    /// [`GapError::WheelOrder`] the wheels that look swapped.
     pub fn into_field_runs(
         self,
         choice: &Choice,
@@ -168,12 +180,13 @@ impl RunSet {
     ) -> Result<Vec<FieldRun>, GapError> {
         let used = self.runs.into_iter().zip(&choice.uses).filter(|(_, used)| **used != Use::Left);
         let runs: Vec<FieldRun> = used
-            .map(|(run, used)| FieldRun::new(run.log, run.terrain, *used == Use::Fit))
-            .collect::<Result<_, _>>()?;
+            .map(|(run, used)| {
+                let field_run = FieldRun::new(run.log, run.terrain, *used == Use::Fit)?;
+                Ok(field_run.driven(run.scenario))
+            })
+            .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
-        if let Some(scale) = load_scale(&signals) {
-            return Err(GapError::LoadScale { scale });
-        }
+        Self::ensure_agreeing(&signals)?;
         match swapped_wheels(&signals) {
             Some(swap) if !any_order => Err(GapError::WheelOrder { swap }),
             _ => Ok(runs),

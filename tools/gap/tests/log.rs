@@ -161,6 +161,26 @@ fn lost_frames_are_counted_by_message() {
 }
 
 #[test]
+fn frames_of_a_message_without_a_stated_period_are_missed_too() {
+    let stated = "BA_DEF_DEF_ \"GenMsgCycleTime\" 10;";
+    assert!(DBC.contains(stated));
+    let dbc = DBC.replace(stated, "BA_DEF_DEF_ \"GenMsgCycleTime\" 0;");
+    let decoder = Decoder::parse(&dbc, Path::new("x.dbc"), &Mapping::default()).unwrap();
+    let mut tick = 0;
+    let kept: String = log()
+        .lines()
+        .filter(|line| {
+            tick += usize::from(line.contains("#2800280028002900"));
+            !(line.contains("18FE1025") && tick == 20)
+        })
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let log = FieldLog::read(kept.as_bytes(), "a.log", &decoder, false).unwrap();
+    let [fault] = log.faults() else { panic!("{:?}", log.faults()) };
+    assert!(fault.to_string().contains("PosMidRear"), "{fault}");
+}
+
+#[test]
 fn a_frame_of_another_length_is_left_out_and_said() {
     let text = log().replacen("18FE1026#2A002B00", "18FE1026#2A00", 3);
     let log = read(&text).unwrap();

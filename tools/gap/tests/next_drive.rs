@@ -21,7 +21,7 @@ fn inquiry_of(names: &[&str]) -> Inquiry {
     let [signals] = signals(&swinging());
     let run = |name: &&str| {
         let log = FieldLog::read(text.as_bytes(), name, &decoder, false).unwrap();
-        FieldRun { log, signals: signals.clone(), fit: true }
+        FieldRun { log, signals: signals.clone(), fit: true, scenario: None }
     };
     Inquiry::new(Machine::xt28(), names.iter().map(run).collect())
 }

@@ -103,6 +103,17 @@ fn a_database_in_windows_1252_or_with_a_mark_before_it_is_read() {
 }
 
 #[test]
+fn a_signal_that_counts_from_another_zero_and_the_other_way_is_read_by_a_mapping() {
+    let source = "{ signal = \"Attitude.Pitch\", unit = \"deg\", scale = -1, offset = 2.5 }";
+    let mapping = format!("[signals]\n\"attitude.pitch\" = {source}\n");
+    let mapping = Mapping::parse(&mapping, Path::new("m.toml")).unwrap();
+    let decoder = Decoder::parse(DBC, Path::new("field.dbc"), &mapping).unwrap();
+    let log = FieldLog::read(log().as_bytes(), "a.log", &decoder, false).unwrap();
+    let pitch = log.series(Channel::Pitch).unwrap().at(0.5).unwrap();
+    assert!((pitch - 2.56_f64.to_radians()).abs() < 1e-12, "{pitch}");
+}
+
+#[test]
 fn a_name_in_a_mapping_file_that_the_database_has_not_is_refused_with_its_line() {
     let decode = |mapping: &str| {
         let mapping = Mapping::parse(mapping, Path::new("m.toml")).unwrap();

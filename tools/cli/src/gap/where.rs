@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 use xt28_gap::diagnosis::{
-    Evidence, Floors, Generator, Knob, Signals, load_scale, share_resistance, with_noise_of,
+    Evidence, Floors, Generator, Knob, Signals, share_resistance, with_noise_of,
 };
 use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
@@ -83,9 +83,7 @@ impl Where {
             Ok::<_, GapError>(with_noise_of(signals, run.log.all_series(), &machine))
         };
         let mut runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
-        if let Some(scale) = load_scale(&runs) {
-            return Err(GapError::LoadScale { scale }.into());
-        }
+        RunSet::ensure_agreeing(&runs)?;
         share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
             eprintln!("{remark}");

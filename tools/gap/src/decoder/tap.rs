@@ -21,6 +21,7 @@ struct Reading {
     channel: Channel,
     signal: Signal,
     si_per: f64,
+    si_from: f64,
 }
 
 /// Why nothing is read from a frame.
@@ -38,9 +39,9 @@ impl Tap {
         Self { message: message.clone(), readings: Vec::new(), protection }
     }
 
-    /// Reads `channel` from `signal` too, of which one is `si_per` in SI.
-    pub(super) fn add(&mut self, channel: Channel, signal: &Signal, si_per: f64) {
-        self.readings.push(Reading { channel, signal: signal.clone(), si_per });
+    /// Reads `channel` from `signal` too, of which one is `si_per` in SI and nothing `si_from`.
+    pub(super) fn add(&mut self, channel: Channel, signal: &Signal, [si_per, si_from]: [f64; 2]) {
+        self.readings.push(Reading { channel, signal: signal.clone(), si_per, si_from });
     }
 
     /// Name of the message.
@@ -91,7 +92,8 @@ impl Tap {
         let present =
             move |r: &&Reading| readable && self.message.is_present(&r.signal, data.data());
         self.readings.iter().filter(present).map(move |r| {
-            (r.channel, r.signal.field.read(data.data()).map(|value| value * r.si_per))
+            let si = |value: f64| value * r.si_per + r.si_from;
+            (r.channel, r.signal.field.read(data.data()).map(si))
         })
     }
 }

@@ -20,6 +20,8 @@ pub struct FieldRun {
     pub signals: Signals,
     /// Whether causes may be fitted on it; the others are held out.
     pub fit: bool,
+    /// What was driven, where somebody says; else the log's name may tell.
+    pub scenario: Option<String>,
 }
 
 /// What is asked.
@@ -44,7 +46,13 @@ impl FieldRun {
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: FieldLog, terrain: Terrain, fit: bool) -> Result<Self, GapError> {
         let signals = Signals::new(&log, terrain)?;
-        Ok(Self { log, signals, fit })
+        Ok(Self { log, signals, fit, scenario: None })
+    }
+
+    /// The same run of the drive `scenario`.
+    #[must_use]
+    pub fn driven(self, scenario: Option<String>) -> Self {
+        Self { scenario, ..self }
     }
 
     /// Name of its log's file, without folders.

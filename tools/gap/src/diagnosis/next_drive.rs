@@ -13,8 +13,7 @@ use rayon::prelude::*;
 use xt28_sim::{Effects, Solver, Terrain};
 
 use super::generator::Generator;
-use super::inquiry::Inquiry;
-use super::inquiry::file_name;
+use super::inquiry::{FieldRun, Inquiry, file_name};
 use super::signals::Signals;
 use super::verdict::{Cause, Diagnosis, Drive, Next, WORTH_TELLING};
 use crate::{FieldLog, GapError, Replay};
@@ -49,7 +48,8 @@ pub fn next_drive(
     }
     let worth = |manoeuvre: Manoeuvre| Ok((worth(inquiry, &rivals, &manoeuvre)?, manoeuvre));
     // What a drive that was made could tell, it has told.
-    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(run.log.name(), m.name));
+    let told = |run: &FieldRun| run.scenario.clone().unwrap_or_else(|| run.log.name().to_owned());
+    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(&told(run), m.name));
     let left: Vec<Manoeuvre> = Manoeuvre::all().into_iter().filter(|m| !made(m)).collect();
     let mut ranked: Vec<(f64, Manoeuvre)> =
         left.into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
@@ -84,7 +84,8 @@ pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Next, Manoeuvre)> {
     Some((Next { manoeuvre, separates: Vec::new(), nats, tests, others }, best))
 }
 
-/// Whether the log at `path` is of the drive `name`, by its own name: `run-3-s_turn.log.gz`.
+/// Whether the log at `path`, or a scenario of that name, is of the drive `name`, by its own name:
+/// `run-3-s_turn.log.gz`, `s_turn`.
 fn is_of(path: &str, name: &str) -> bool {
     let file = file_name(path).to_lowercase().replace('_', "-");
     let stem = file.split('.').next().unwrap_or_default();
@@ -186,6 +187,7 @@ mod tests {
         for (path, drive) in [
             ("field/run-3-s_turn.log.gz", "s-turn"),
             ("S-Turn.mcap", "s-turn"),
+            ("s_turn", "s-turn"),
             ("day.2/run-2-single_arm.log", "single-arm"),
         ] {
             assert!(is_of(path, drive), "{path}");

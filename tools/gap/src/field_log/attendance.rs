@@ -3,12 +3,10 @@
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
+use super::gaps::{GAP_PERIODS, Gaps, Row};
 use crate::FaultKind;
 use crate::decoder::{Tap, Unread};
 
-/// A frame this many periods after the last of its kind came after a gap. Below two, so that one lost
-/// frame is seen; above one, so that jitter is not.
-const GAP_PERIODS: f64 = 1.5;
 /// A frame that repeats the one before, alive counter and all, within this share of the period was
 /// logged twice: the sender would have counted on.
 const SAME_COUNT_PERIODS: f64 = 0.75;
@@ -22,10 +20,8 @@ pub(super) struct Attendance {
     frames: u64,
     repeats: u64,
     repeat_line: u64,
-    gaps: u64,
-    lost: u64,
-    longest_s: f64,
-    gap_line: u64,
+    gaps: Gaps,
+    row: Row,
     short: Option<(u64, usize, u64)>,
     long: Option<(u64, usize, u64)>,
     spoiled: Option<(u64, f64, u64)>,
@@ -78,21 +74,12 @@ impl Attendance {
         }
         self.frames += 1;
         let before = self.last.as_ref().map(|last| last.at);
-        if let (Some(before), Some(period)) = (before, tap.period()) {
-            let away_s = (at - before).as_secs_f64();
-            let periods = away_s / period.as_secs_f64();
-            if periods > GAP_PERIODS {
-                if self.gaps == 0 {
-                    self.gap_line = line;
-                }
-                self.gaps += 1;
-                // A whole number of periods, some tens of thousands at most.
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                {
-                    self.lost += (periods.round() as u64).saturating_sub(1).max(1);
-                }
-                self.longest_s = self.longest_s.max(away_s);
+        match (before, tap.period()) {
+            (Some(before), Some(period)) => {
+                self.gaps.note((at - before).as_secs_f64(), period.as_secs_f64(), line);
             }
+            (None, Some(_)) => {}
+            (_, None) => self.row.note(at, line),
         }
         let is_news = self.last.as_ref().is_some_and(|last| last.frame.data() != frame.data());
         self.last = Some(Heard { at, frame: *frame, before, is_news });
@@ -100,11 +87,11 @@ impl Attendance {
 
     pub(super) fn faults(&self, tap: &Tap) -> impl Iterator<Item = (u64, FaultKind)> {
         let message = || tap.name().to_owned();
-        let dropped = (self.gaps > 0).then(|| {
-            let (gaps, frames, longest_s) = (self.gaps, self.lost, self.longest_s);
-            let due = self.frames + self.lost;
-            let message = message();
-            (self.gap_line, FaultKind::Dropped { message, gaps, frames, due, longest_s })
+        let missing = if tap.period().is_some() { self.gaps } else { self.row.gaps() };
+        let dropped = (missing.gaps > 0).then(|| {
+            let Gaps { gaps, lost: frames, longest_s, line } = missing;
+            let (message, due) = (message(), self.frames + frames);
+            (line, FaultKind::Dropped { message, gaps, frames, due, longest_s })
         });
         let repeated = (self.repeats > 0).then(|| {
             let (frames, of) = (self.repeats, self.frames + self.repeats);

@@ -20,7 +20,7 @@ pub(crate) fn inquiry() -> Inquiry {
     let log = FieldLog::read(text.as_bytes(), HOSTILE, &decoder(), false).unwrap();
     assert!(!log.faults().is_empty(), "the pause is a fault with the log's name in it");
     let [signals] = signals(&swinging());
-    let run = |fit| FieldRun { log: log.clone(), signals: signals.clone(), fit };
+    let run = |fit| FieldRun { log: log.clone(), signals: signals.clone(), fit, scenario: None };
     Inquiry::new(Machine::xt28(), vec![run(true), run(false)])
 }
 

@@ -7,8 +7,8 @@ use crate::diagnosis::verdict::{Diagnosis, Spot};
 /// Horizons, s.
 pub const HORIZONS_S: [f64; 5] = [0.1, 0.5, 1.0, 2.0, 5.0];
 
-/// Samples of a piece of a residual: 5 s, as the furthest horizon.
-const PIECE: usize = 50;
+/// Samples of a piece of a residual: from its first to its last is the furthest horizon, 5 s.
+const PIECE: usize = 51;
 /// Places of the verdict that have a curve before all others. An error in floors that every machine has
 /// may be larger than the one that is named: then the block that the verdict is about had none.
 const PLACES: usize = 2;
@@ -64,7 +64,7 @@ fn curve(pairs: &[Pair], first: &Pair) -> (Generator, Curve) {
     let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
     let moved = |after: bool, horizon_s: f64| {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let by = ((horizon_s / STEP_S).round() as usize).min(PIECE - 1);
+        let by = (horizon_s / STEP_S).round() as usize;
         rms(same().flat_map(move |pair| {
             let residuals = if after { &pair.after } else { &pair.before };
             residuals.iter().flat_map(move |residual| {

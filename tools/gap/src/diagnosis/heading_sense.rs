@@ -1,0 +1,152 @@
+//! Whether a receiver's heading is the way in which its fixes go: a compass counts clockwise from north, and
+//! some receivers in quarter turns or from the stern.
+
+use core::f64::consts::PI;
+use core::fmt;
+
+use super::signals::Signals;
+
+/// Two fixes this far apart tell a course, m: some times what a receiver is off by.
+const APART_M: f64 = 2.0;
+/// Slower than this nothing tells whether the machine goes ahead, m/s.
+const AHEAD_M_S: f64 = 0.2;
+/// Courses without which nothing is said.
+const COURSES_MIN: usize = 8;
+/// Courses agree where their pointers, laid together, are this share of their number long.
+const AGREE: f64 = 0.9;
+/// No antenna beside its place and no machine in a bend goes this far beside its heading, rad.
+const BESIDE_RAD: f64 = 0.35;
+
+/// A heading that is not the way in which the machine goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OddHeading {
+    /// Whether it counts the other way round.
+    pub is_mirrored: bool,
+    /// What is to be added to it then, rad, within half a turn.
+    pub offset_rad: f64,
+}
+
+/// What is wrong with the heading of all `runs`, if the fixes say so.
+#[must_use]
+pub fn odd_heading(runs: &[Signals]) -> Option<OddHeading> {
+    let courses: Vec<[f64; 2]> = runs.iter().flat_map(courses).collect();
+    if courses.len() < COURSES_MIN {
+        return None;
+    }
+    let lies =
+        |sense: f64| agreed(courses.iter().map(|[course, heading]| course - sense * heading));
+    match (lies(1.0), lies(-1.0)) {
+        (Some(offset_rad), _) if offset_rad.abs() < BESIDE_RAD => None,
+        (Some(offset_rad), _) => Some(OddHeading { is_mirrored: false, offset_rad }),
+        (None, Some(offset_rad)) => Some(OddHeading { is_mirrored: true, offset_rad }),
+        (None, None) => None,
+    }
+}
+
+/// The angle on which `angles` agree, within half a turn; none where they do not.
+#[allow(clippy::cast_precision_loss)]
+fn agreed(angles: impl Iterator<Item = f64>) -> Option<f64> {
+    let (mut east, mut north, mut count) = (0.0, 0.0, 0_usize);
+    for angle in angles {
+        (east, north, count) = (east + angle.cos(), north + angle.sin(), count + 1);
+    }
+    (f64::hypot(east, north) > AGREE * count as f64).then(|| north.atan2(east))
+}
+
+/// Course over ground and heading in the middle, rad, wherever the machine went ahead for some metres.
+fn courses(s: &Signals) -> Vec<[f64; 2]> {
+    let mut all = Vec::new();
+    let Some(mut from) = s.fixes.first() else { return all };
+    for to in &s.fixes {
+        let [east_m, north_m] = [to[1] - from[1], to[2] - from[2]];
+        if east_m.hypot(north_m) < APART_M {
+            continue;
+        }
+        let goes_ahead = [from[0], to[0]].iter().all(|at_s| speed_m_s(s, *at_s) > AHEAD_M_S);
+        if let (true, Some([heading, _])) = (goes_ahead, s.heading_at(0.5 * (from[0] + to[0]))) {
+            all.push([north_m.atan2(east_m), heading]);
+        }
+        from = to;
+    }
+    all
+}
+
+/// How fast wheels of a metre and a half would go ahead, m/s.
+fn speed_m_s(s: &Signals, at_s: f64) -> f64 {
+    const RADIUS_M: f64 = 0.74;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let i = (at_s / super::signals::DT_S) as usize;
+    if i < s.len { s.mean_wheel_speed_rad_s(i) * RADIUS_M } else { 0.0 }
+}
+
+impl fmt::Display for OddHeading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let offset_deg = self.offset_rad.to_degrees();
+        if self.is_mirrored {
+            return write!(
+                f,
+                "counts clockwise; in a mapping: scale = -1.0, offset = {offset_deg:.0}"
+            );
+        }
+        let (turn, half) = (offset_deg, PI.to_degrees());
+        let beside = if (turn.abs() - half).abs() < 1.0 { half } else { turn };
+        write!(
+            f,
+            "is {beside:.0} deg beside it; in a mapping: offset = {beside:.0}, or, where it counts clockwise from north, scale = -1.0, offset = 90"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Channel, Series, Terrain};
+
+    /// A machine that goes ahead at 1.48 m/s for 60 s, turning left as `turns` says, rad/s, with a heading made
+    /// of the true one.
+    fn driven(turns: f64, said: impl Fn(f64) -> f64) -> [Signals; 1] {
+        let at = |k: i32| 0.1 * f64::from(k);
+        let [mut east, mut north, mut heading] = [const { Vec::new() }; 3];
+        let (mut x, mut y) = (0.0, 0.0);
+        for k in 0..600 {
+            let psi = turns * at(k);
+            east.push((at(k), x));
+            north.push((at(k), y));
+            heading.push((at(k), said(psi)));
+            (x, y) = (x + 0.148 * psi.cos(), y + 0.148 * psi.sin());
+        }
+        let still = |value: f64| (0..600).map(|k| (at(k), value)).collect::<Series>();
+        let reads = |channel: Channel| match channel {
+            Channel::WheelSpeed(_) => still(2.0),
+            Channel::East => east.iter().copied().collect(),
+            Channel::North => north.iter().copied().collect(),
+            Channel::Heading => heading.iter().copied().collect(),
+            _ => still(0.0),
+        };
+        let all = Channel::all().into_iter().map(|channel| (channel, reads(channel)));
+        [Signals::of_series("made up", &all.collect(), 60.0, Terrain::Flat).unwrap()]
+    }
+
+    #[test]
+    fn a_heading_as_the_machine_goes_is_not_complained_of() {
+        for turns in [0.0, 0.05, -0.1] {
+            assert_eq!(odd_heading(&driven(turns, |psi| psi)), None);
+            assert_eq!(odd_heading(&driven(turns, |psi| psi + 0.1)), None, "an antenna beside");
+        }
+    }
+
+    #[test]
+    fn a_compass_is_told_with_the_way_to_mend_it() {
+        let compass = |psi: f64| PI / 2.0 - psi;
+        let odd = odd_heading(&driven(0.05, compass)).expect("it turned");
+        assert!(odd.is_mirrored && (odd.offset_rad - PI / 2.0).abs() < 0.05, "{odd:?}");
+        assert!(odd.to_string().ends_with("scale = -1.0, offset = 90"), "{odd}");
+        let straight = odd_heading(&driven(0.0, compass)).expect("a quarter turn beside");
+        assert!(straight.to_string().starts_with("is -90 deg beside it"), "{straight}");
+    }
+
+    #[test]
+    fn a_heading_that_wanders_says_nothing_of_its_sense() {
+        assert_eq!(odd_heading(&driven(0.05, |psi| 40.0 * psi)), None);
+    }
+}

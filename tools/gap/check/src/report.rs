@@ -142,7 +142,8 @@ impl Report {
         for (row, score) in rows.iter().zip(sweep_scores(&self.sweep)) {
             writeln!(to, "{row:<32} {}", cell(&score))?;
         }
-        writeln!(to, "{:<36} {:<8} {:<30} parts most", "without", "said", "likeliest")?;
+        let head = ["without", "said", "left over", "likeliest"];
+        writeln!(to, "{:<36} {:<8} {:<9} {:<30} parts most", head[0], head[1], head[2], head[3])?;
         for w in &self.sweep {
             let verdict = format!("{:?}", w.verdict).to_lowercase();
             let [named, place] = [&w.named, &w.place].map(|t| t.as_deref().unwrap_or("-"));
@@ -150,7 +151,8 @@ impl Report {
                 if w.is_shown { "  <- named falsely or missed" } else { "  <- shows in nothing" };
             let marks = [(w.is_told, missed), (w.is_placed, "  <- wrong place")];
             let marks = marks.map(|(fine, mark)| if fine { "" } else { mark }).concat();
-            writeln!(to, "{:<36} {verdict:<8} {named:<30} {place}{marks}", w.truth.join(" + "))?;
+            let (truth, left) = (w.truth.join(" + "), w.left_over);
+            writeln!(to, "{truth:<36} {verdict:<8} {left:<9.2} {named:<30} {place}{marks}")?;
         }
         Ok(())
     }

@@ -28,6 +28,8 @@ pub struct Withheld {
     pub truth: Vec<String>,
     /// What was said without it.
     pub verdict: Verdict,
+    /// What speaks against the likeliest cause or pair, beside the most that does against a right one.
+    pub left_over: f64,
     /// The likeliest cause named without it.
     pub named: Option<String>,
     /// Block and wheels whose gap says most.
@@ -114,6 +116,7 @@ fn withhold(machine: &Source, facts: &[Fact]) -> Result<Withheld, CheckError> {
         case: machine.name(),
         truth: effects.iter().map(|(effect, on)| format!("{} {on}", effect.name)).collect(),
         verdict: blind.verdict,
+        left_over: blind.grounds.left_over,
         named: first.map(|cause| format!("{} {}", cause.effect.name, cause.scope)),
         place: place.map(|place| format!("{} {}", place.block, place.scope)),
         is_told,

@@ -63,7 +63,9 @@ fn with(effect: &str) -> Vec<(SimTime, Frame)> {
 }
 
 fn effects(effect: &str) -> Effects {
-    Overlay::parse(&format!("[[effect]]\n{effect}"), Path::new("test")).unwrap().effects()
+    Overlay::parse(&format!("[[effect]]\n{effect}"), Path::new("test"))
+        .unwrap()
+        .effects(&Machine::xt28())
 }
 
 /// One signal over time, of the message that `decode` takes.
@@ -103,9 +105,12 @@ fn effects_at_severity_zero_leave_the_bus_as_the_others_have_it() {
         let all: Vec<Entry> =
             CATALOGUE.iter().enumerate().map(|effect| entry(effect, severity)).collect();
         let in_force = all.iter().filter(|entry| entry.severity > 0.0).cloned().collect();
-        let alone = bus(Overlay { entries: in_force }.effects());
+        let alone = bus(Overlay { entries: in_force }.effects(&Machine::xt28()));
         assert!(alone != nominal, "effects in force show");
-        assert!(bus(Overlay { entries: all }.effects()) == alone, "some frame differs");
+        assert!(
+            bus(Overlay { entries: all }.effects(&Machine::xt28())) == alone,
+            "some frame differs"
+        );
     }
 }
 

@@ -13,11 +13,15 @@ type Signal = fn(&VehicleState) -> Vec<f64>;
 
 /// Onto a ramp with everything in motion: drive, both joints and all arms.
 fn trace(effects: &Effects, steps: u32) -> Vec<VehicleState> {
+    trace_of(&Machine::xt28(), effects, steps)
+}
+
+fn trace_of(machine: &Machine, effects: &Effects, steps: u32) -> Vec<VehicleState> {
     let ramp = Ramp { x_m: [0.3, 1.3, 3.0, 4.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
-    let (machine, strokes) = (Machine::xt28(), PerWheel::splat(0.17));
+    let strokes = PerWheel::splat(0.17);
     let terrain = Terrain::ramp(&ramp);
     let mut vehicle: Vehicle<RapierBodies> =
-        Vehicle::with(&machine, effects, &terrain, strokes, STEP);
+        Vehicle::with(machine, effects, &terrain, strokes, STEP);
     let states = (0..steps).map(|step| {
         let t = f64::from(step) * STEP.as_secs_f64();
         vehicle.step(&Actuation {
@@ -54,7 +58,7 @@ fn severity_zero_leaves_every_value_nominal() {
     for effects in each.chain([all.clone()]) {
         let text = overlay(&effects, 0.0).to_toml();
         let read = Overlay::parse(&text, Path::new("o.toml")).unwrap();
-        assert_eq!(read.effects(), Effects::default(), "{}", effects[0].name);
+        assert_eq!(read.effects(&Machine::xt28()), Effects::default(), "{}", effects[0].name);
     }
 }
 
@@ -86,7 +90,11 @@ fn severity_zero_beside_all_others_leaves_them_to_the_bit() {
         for both in [[&none, &others], [&others, &none]] {
             let listed = Overlay { entries: both.map(|o| o.entries.clone()).concat() };
             let read = Overlay::parse(&listed.to_toml(), Path::new("o.toml")).unwrap();
-            assert!(bits(&read.effects()) == alone, "{} at severity zero shows", effect.name);
+            assert!(
+                bits(&read.effects(&Machine::xt28())) == alone,
+                "{} at severity zero shows",
+                effect.name
+            );
         }
     }
 }
@@ -103,9 +111,22 @@ fn numbers(s: &VehicleState) -> Vec<f64> {
 /// rounding of the nominal one, and not within a millimetre or a kilonewton.
 #[test]
 fn every_effect_fades_in_from_nominal() {
-    let nominal = trace(&Effects::default(), 400);
+    fades_in(&Machine::xt28());
+}
+
+/// Nor on a machine whose file has other numbers than the nominal one where effects replace some.
+#[test]
+fn every_effect_fades_in_from_what_the_machine_file_says() {
+    let mut machine = Machine::xt28();
+    machine.vehicle.tyre_stiffness_n_m = 9.0e5;
+    machine.vehicle.tyre_damping_n_s_m = 2.0e4;
+    fades_in(&machine);
+}
+
+fn fades_in(machine: &Machine) {
+    let nominal = trace_of(machine, &Effects::default(), 400);
     for effect in CATALOGUE {
-        let with = trace(&overlay(&[effect], 1e-6).effects(), 400);
+        let with = trace_of(machine, &overlay(&[effect], 1e-6).effects(machine), 400);
         let most = |signal: Signal| {
             let both = with.iter().zip(&nominal).map(|(a, b)| (signal(a), signal(b)));
             let apart = both.flat_map(|(a, b)| a.into_iter().zip(b).map(|(a, b)| (a - b).abs()));

@@ -75,7 +75,7 @@ impl<W: Write> Lockstep<W> {
         let mut bus = VirtualBus::new(Bitrate::MBIT_1);
         bus.enable_tap();
         let config = EmulatorConfig {
-            effects: overlay.effects(),
+            effects: overlay.effects(machine),
             solver: *solver,
             mishaps: scenario.mishaps(),
             profile: scenario.profile,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use xt28_machine::Wheel;
+use xt28_machine::{Machine, Wheel};
 
 use super::{Effects, Scope};
 
@@ -63,7 +63,8 @@ pub struct Effect {
 pub struct Parameter {
     /// Name in overlays and verdicts, with its unit.
     pub name: &'static str,
-    /// Value at which the effect is not there.
+    /// Value at which the effect is not there. Where the machine file has the same number, it is the
+    /// nominal machine's, and stands for whatever the file says.
     pub neutral: f64,
     /// Standard deviation that a careful engineer would believe before seeing data.
     pub tolerance: f64,
@@ -117,6 +118,13 @@ impl Parameter {
             Slot::PerWheel(slot) => scope.wheels().for_each(|w| *slot(effects, w) = value),
             Slot::Whole(slot) => *slot(effects) = value,
         }
+    }
+
+    /// Value at which the effect is not there on this machine: what its file says of the same number, or
+    /// else [`Self::neutral`].
+    #[must_use]
+    pub fn neutral_on(&self, machine: &Machine) -> f64 {
+        self.get(&Effects::none_on(machine), Scope::All)
     }
 
     /// Its value on the first wheel of `scope`, or its one value where it has no wheel.

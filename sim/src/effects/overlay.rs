@@ -4,7 +4,7 @@
 //! [[effect]]
 //! name = "arm-delay"
 //! scope = "front"     # "all" unless given
-//! severity = 0.5      # share of the way from neutral; 1 unless given
+//! severity = 0.5      # share of the way from the machine as it is; 1 unless given
 //! delay_s = 0.2
 //! ```
 
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::{Spanned, Value};
+use xt28_machine::Machine;
 
 use super::effect::{Effect, Parameter};
 use super::{Effects, Scope, find};
@@ -41,7 +42,7 @@ pub struct Entry {
     pub effect: &'static Effect,
     /// On which wheels.
     pub scope: Scope,
-    /// Share of the way from neutral to the values given; 0 is the nominal plant.
+    /// Share of the way from the machine file's machine to the values given; 0 is that machine.
     pub severity: f64,
     /// Parameters that are set; the others stay neutral.
     pub values: Vec<(&'static Parameter, f64)>,
@@ -107,11 +108,11 @@ impl Overlay {
         Ok(Self { entries })
     }
 
-    /// The values of all its effects, neutral elsewhere.
+    /// The values of all its effects on this machine, neutral elsewhere.
     #[must_use]
-    pub fn effects(&self) -> Effects {
+    pub fn effects(&self, machine: &Machine) -> Effects {
         let mut effects = Effects::default();
-        self.entries.iter().for_each(|entry| entry.apply(&mut effects));
+        self.entries.iter().for_each(|entry| entry.apply(machine, &mut effects));
         effects
     }
 
@@ -192,16 +193,16 @@ impl Entry {
         Ok(entry)
     }
 
-    /// Sets its parameters in `effects`.
-    pub fn apply(&self, effects: &mut Effects) {
+    /// Sets its parameters in `effects`, which are those of this machine.
+    pub fn apply(&self, machine: &Machine, effects: &mut Effects) {
         for (parameter, value) in &self.values {
-            let neutral = parameter.neutral;
-            let value = if self.severity == 1.0 {
-                *value
-            } else {
-                neutral + self.severity * (value - neutral)
-            };
-            parameter.set(effects, self.scope, value);
+            let own = parameter.neutral_on(machine);
+            let value =
+                if self.severity == 1.0 { *value } else { own + self.severity * (value - own) };
+            // Neutral stands for the machine file's own number. Where that is another, who says the very
+            // number means it: a last bit more says so.
+            let is_said = value == parameter.neutral && value != own;
+            parameter.set(effects, self.scope, if is_said { value.next_up() } else { value });
         }
     }
 }
@@ -242,15 +243,16 @@ mod tests {
         });
         let overlay = Overlay { entries: entries.collect() };
         let again = parse(&overlay.to_toml()).unwrap();
-        assert_eq!(again.effects(), overlay.effects());
-        assert_ne!(again.effects(), Effects::default());
+        let machine = Machine::xt28();
+        assert_eq!(again.effects(&machine), overlay.effects(&machine));
+        assert_ne!(again.effects(&machine), Effects::default());
     }
 
     #[test]
     fn severity_zero_is_the_nominal_plant() {
         let text =
             "[[effect]]\nname = \"arm-delay\"\nscope = \"front\"\nseverity = 0\ndelay_s = 0.2";
-        assert_eq!(parse(text).unwrap().effects(), Effects::default());
+        assert_eq!(parse(text).unwrap().effects(&Machine::xt28()), Effects::default());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The values of all effects, block by block.
 
-use xt28_machine::PerWheel;
+use xt28_machine::{Machine, PerWheel};
 
 use super::{
     ArmEffects, BusEffects, DriveEffects, MassEffects, PressureBias, PressureScale, PumpFlowLimit,
@@ -29,6 +29,17 @@ pub struct Effects {
     pub sensors: SensorEffects,
     /// Of the way to the ECUs.
     pub bus: BusEffects,
+}
+
+impl Effects {
+    /// No effect on this machine: the default, but with the machine file's own numbers where effects
+    /// replace some.
+    #[must_use]
+    pub fn none_on(machine: &Machine) -> Self {
+        let soft_tyre = SoftTyre::of(machine);
+        let wheels = PerWheel::splat(WheelEffects { soft_tyre, ..WheelEffects::default() });
+        Self { wheels, ..Self::default() }
+    }
 }
 
 /// What is true of one wheel and of the sensors of its arm.

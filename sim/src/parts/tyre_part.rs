@@ -60,7 +60,12 @@ impl TyrePart {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use xt28_machine::Wheel;
+
     use super::*;
+    use crate::effects::Overlay;
 
     #[test]
     fn what_an_effect_does_not_say_is_the_machine_files() {
@@ -76,5 +81,30 @@ mod tests {
         assert_eq!(numbers(&effects), [4.0e5, 9.0e3]);
         effects.soft_tyre.damping_n_s_m = 5.0e3;
         assert_eq!(numbers(&effects), [4.0e5, 5.0e3]);
+    }
+
+    /// A severity goes from the tyre that the machine file has to the one that the overlay has, whatever
+    /// either is: nothing on the way, the near rigid number included, is another tyre.
+    #[test]
+    fn severity_leads_from_the_machine_files_tyre_to_the_overlays() {
+        let mut machine = Machine::xt28();
+        for own in [5.0e6, 6.0e5, 8.0e6] {
+            machine.vehicle.tyre_stiffness_n_m = own;
+            for said in [4.0e5, 8.0e6, 2.0e7] {
+                for severity in [0.0, 1e-9, 0.25, 0.5, 1.0] {
+                    let text = format!(
+                        "[[effect]]\nname = \"soft-tyres\"\nseverity = {severity}\nstiffness_n_m = {said}"
+                    );
+                    let overlay = Overlay::parse(&text, Path::new("o.toml")).unwrap();
+                    let tyre =
+                        TyrePart::new(&machine, &overlay.effects(&machine).wheels[Wheel::Ml]);
+                    let wanted = own + severity * (said - own);
+                    let apart = (tyre.stiffness_n_m / wanted - 1.0).abs();
+                    let is_bound = if severity == 0.0 { apart == 0.0 } else { apart < 1e-15 };
+                    assert!(is_bound, "{own} to {said} by {severity}: {}", tyre.stiffness_n_m);
+                    assert_eq!(tyre.damping_n_s_m, machine.vehicle.tyre_damping_n_s_m);
+                }
+            }
+        }
     }
 }

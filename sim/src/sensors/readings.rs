@@ -63,7 +63,7 @@ impl Sensors {
 
 #[cfg(test)]
 mod tests {
-    use xt28_machine::Wheel;
+    use xt28_machine::{Machine, Wheel};
 
     use super::*;
     use crate::effects::Overlay;
@@ -84,7 +84,7 @@ mod tests {
         let text = format!("[[effect]]\n{effect}");
         let overlay = Overlay::parse(&text, std::path::Path::new("test")).unwrap();
         let read = |effects: &Effects| Sensors::new(effects).read(&state());
-        (read(&Effects::default()), read(&overlay.effects()))
+        (read(&Effects::default()), read(&overlay.effects(&Machine::xt28())))
     }
 
     #[test]

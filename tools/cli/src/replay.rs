@@ -65,7 +65,8 @@ impl Replay {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let replay = Run::run(&log, &machine, &effects.effects(), self.solver, &self.ground()?)?;
+        let replay =
+            Run::run(&log, &machine, &effects.effects(&machine), self.solver, &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {
             say!("{:#}\n", report.json());

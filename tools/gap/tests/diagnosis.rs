@@ -85,7 +85,8 @@ fn fitted_after(
     let (log, terrain) = log(&folder, run);
     let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
     let machine = Machine::xt28();
-    let replay = Replay::run(&log, &machine, &overlay.effects(), Solver::Rapier, &terrain).unwrap();
+    let replay =
+        Replay::run(&log, &machine, &overlay.effects(&machine), Solver::Rapier, &terrain).unwrap();
     let mut series = replay.all_series().clone();
     for (channel, samples) in log.all_series() {
         if channel.is_command() {

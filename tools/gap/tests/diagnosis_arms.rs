@@ -72,7 +72,8 @@ fn ranked(run: &str, overlay: &str, rivals: &[&str]) -> Option<Vec<Fit>> {
     let (log, terrain) = log(run)?;
     let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
     let machine = Machine::xt28();
-    let replay = Replay::run(&log, &machine, &overlay.effects(), Solver::Rapier, &terrain).unwrap();
+    let replay =
+        Replay::run(&log, &machine, &overlay.effects(&machine), Solver::Rapier, &terrain).unwrap();
     let mut series = replay.all_series().clone();
     for (channel, samples) in log.all_series() {
         if channel.is_command() {

@@ -1,5 +1,7 @@
 //! `soft-tyres`: vertical compliance and damping of a real tyre.
 
+use xt28_machine::Machine;
+
 use crate::effects::{Block, Effect, Parameter, Slot};
 
 /// Spring and damper of one tyre. A number at its default is the machine file's.
@@ -17,6 +19,15 @@ const NEAR_RIGID: SoftTyre = SoftTyre { stiffness_n_m: 8.0e6, damping_n_s_m: 6.0
 impl Default for SoftTyre {
     fn default() -> Self {
         NEAR_RIGID
+    }
+}
+
+impl SoftTyre {
+    /// The machine file's own tyre.
+    #[must_use]
+    pub const fn of(machine: &Machine) -> Self {
+        let v = &machine.vehicle;
+        Self { stiffness_n_m: v.tyre_stiffness_n_m, damping_n_s_m: v.tyre_damping_n_s_m }
     }
 }
 

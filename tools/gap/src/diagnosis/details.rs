@@ -81,7 +81,7 @@ impl Details {
     pub fn new(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Result<Self, GapError> {
         let overlay = diagnosis.overlay();
         let mut with_causes = inquiry.believed.clone();
-        overlay.entries.iter().for_each(|entry| entry.apply(&mut with_causes));
+        overlay.entries.iter().for_each(|entry| entry.apply(&inquiry.machine, &mut with_causes));
         let pairs = pairs(inquiry, &with_causes, diagnosis.since_s());
         Ok(Self {
             runs: inquiry

@@ -132,7 +132,7 @@ impl HowFar {
     #[must_use]
     pub fn with(&self, causes: &[Cause]) -> Effects {
         let mut effects = self.believed.clone();
-        overlay(causes).entries.iter().for_each(|entry| entry.apply(&mut effects));
+        overlay(causes).entries.iter().for_each(|entry| entry.apply(&self.machine, &mut effects));
         effects
     }
 

@@ -99,7 +99,7 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     let mut config = EmulatorConfig::new(machine, terrain, args.seed);
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
     if let Some(path) = &args.effects {
-        config.effects = Overlay::load(path)?.effects(&config.machine);
+        config.effects = Overlay::load(path)?.effects(&config.machine)?;
     }
     if let Some(path) = &args.mishaps {
         config.mishaps = Mishaps::load(path)?;

@@ -66,6 +66,7 @@ fn effects(effect: &str) -> Effects {
     Overlay::parse(&format!("[[effect]]\n{effect}"), Path::new("test"))
         .unwrap()
         .effects(&Machine::xt28())
+        .unwrap()
 }
 
 /// One signal over time, of the message that `decode` takes.
@@ -105,10 +106,10 @@ fn effects_at_severity_zero_leave_the_bus_as_the_others_have_it() {
         let all: Vec<Entry> =
             CATALOGUE.iter().enumerate().map(|effect| entry(effect, severity)).collect();
         let in_force = all.iter().filter(|entry| entry.severity > 0.0).cloned().collect();
-        let alone = bus(Overlay { entries: in_force }.effects(&Machine::xt28()));
+        let alone = bus(Overlay { entries: in_force }.effects(&Machine::xt28()).unwrap());
         assert!(alone != nominal, "effects in force show");
         assert!(
-            bus(Overlay { entries: all }.effects(&Machine::xt28())) == alone,
+            bus(Overlay { entries: all }.effects(&Machine::xt28()).unwrap()) == alone,
             "some frame differs"
         );
     }

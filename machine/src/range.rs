@@ -10,6 +10,8 @@ const LENGTH_MAX_M: f64 = 100.0;
 const LEVER_MIN_M: f64 = 0.05;
 /// How far beyond its ends a cylinder may be driven, m: its metal stops give way.
 const STOP_GIVES_M: f64 = 0.02;
+/// How far two numbers that follow from one another may part: both are rounded.
+const ROUNDING: f64 = 0.01;
 /// What may lie on either side of zero; all else is a size or a gain.
 const SIGNED: [&str; 9] = [
     "front_com_m",
@@ -94,6 +96,16 @@ pub(crate) fn unhinged(machine: &Machine) -> Option<(&'static str, f64, &'static
                 about the pivot";
     let far_m = arms.stroke_max_m + STOP_GIVES_M;
     (!moves(far_m)).then_some(("arms.stroke_max_m", arms.stroke_max_m, must))
+}
+
+/// A number that others of the file give too, and otherwise: section and key, the value, what it must be.
+pub(crate) fn at_odds(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
+    let Machine { arms, hydraulics, .. } = machine;
+    let speed_m_s = hydraulics.flow_full_m3_s / arms.area_bore_m2;
+    let parts = (hydraulics.speed_full_m_s / speed_m_s - 1.0).abs() > ROUNDING;
+    let must = "it must be hydraulics.flow_full_m3_s over arms.area_bore_m2 to 1 %, the speed at which a \
+                valve fully open extends its cylinder";
+    parts.then_some(("hydraulics.speed_full_m_s", hydraulics.speed_full_m_s, must))
 }
 
 /// A number that is too low: section and key, the value, what it must be.
@@ -227,6 +239,23 @@ mod tests {
             let error = refusal(from, to);
             assert!(error.starts_with(&format!("m.toml: {wanted}")), "{error}");
         }
+    }
+
+    #[test]
+    fn a_valves_flow_and_its_cylinders_speed_are_one_number() {
+        for (from, to) in [
+            ("flow_full_m3_s = 0.0016667 ", "flow_full_m3_s = 0.002 "),
+            ("speed_full_m_s = 0.212 ", "speed_full_m_s = 0.2 "),
+            ("area_bore_m2 = 0.00785 ", "area_bore_m2 = 0.0095 "),
+        ] {
+            let error = refusal(from, to);
+            assert!(error.starts_with("m.toml: hydraulics.speed_full_m_s = 0.2"), "{error}");
+            assert!(error.contains("hydraulics.flow_full_m3_s over arms.area_bore_m2"), "{error}");
+        }
+        let faster = Machine::builtin_text()
+            .replace("flow_full_m3_s = 0.0016667 ", "flow_full_m3_s = 0.002 ")
+            .replace("speed_full_m_s = 0.212 ", "speed_full_m_s = 0.255 ");
+        assert!(Machine::parse(&faster, Path::new("m.toml")).is_ok());
     }
 
     #[test]

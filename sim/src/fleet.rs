@@ -17,7 +17,7 @@ use crate::{Actuation, Bodies, Plant, ReducedBodies, Vehicle, VehicleState};
 ///
 /// let machine = Machine::xt28();
 /// let overlay = "[[effect]]\nname = 'payload'\nmass_kg = 3000.0";
-/// let loaded = Overlay::parse(overlay, "loaded.toml".as_ref())?.effects(&machine);
+/// let loaded = Overlay::parse(overlay, "loaded.toml".as_ref())?.effects(&machine)?;
 /// let ground = Terrain::Flat;
 /// let vehicle = |effects: &Effects| -> Vehicle<ReducedBodies> {
 ///     Vehicle::with(&machine, effects, &ground, PerWheel::splat(0.17), STEP)

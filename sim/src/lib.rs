@@ -36,7 +36,7 @@ pub use parts::{
 pub use plant::{Held, Plant, STEP, Track};
 pub use rapier::{RapierBodies, Tread};
 pub use reduced::ReducedBodies;
-pub use sensors::{GnssFix, GnssReceiver, Imu, ImuSample, Readings, Sensors};
+pub use sensors::{GnssFix, GnssReceiver, HeightMapReader, Imu, ImuSample, Readings, Sensors};
 pub use solver::{Solver, UnknownSolver};
 pub use state::VehicleState;
 pub use vehicle::Vehicle;

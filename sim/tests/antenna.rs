@@ -37,7 +37,8 @@ fn an_antenna_elsewhere_swings_with_the_frame_and_nothing_else_feels_it() {
         LEVER_M[0], LEVER_M[1]
     );
     let overlay = Overlay::parse(&text, Path::new("o.toml")).unwrap();
-    let (nominal, moved) = (drive(&Effects::default()), drive(&overlay.effects(&Machine::xt28())));
+    let (nominal, moved) =
+        (drive(&Effects::default()), drive(&overlay.effects(&Machine::xt28()).unwrap()));
     let [ahead_m, left_m] = LEVER_M;
     for (step, (n, m)) in nominal.iter().zip(&moved).enumerate() {
         let [x, y, _] = apart(m.antenna_position_m, n.antenna_position_m);

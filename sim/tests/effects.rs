@@ -58,7 +58,12 @@ fn severity_zero_leaves_every_value_nominal() {
     for effects in each.chain([all.clone()]) {
         let text = overlay(&effects, 0.0).to_toml();
         let read = Overlay::parse(&text, Path::new("o.toml")).unwrap();
-        assert_eq!(read.effects(&Machine::xt28()), Effects::default(), "{}", effects[0].name);
+        assert_eq!(
+            read.effects(&Machine::xt28()).unwrap(),
+            Effects::default(),
+            "{}",
+            effects[0].name
+        );
     }
 }
 
@@ -91,7 +96,7 @@ fn severity_zero_beside_all_others_leaves_them_to_the_bit() {
             let listed = Overlay { entries: both.map(|o| o.entries.clone()).concat() };
             let read = Overlay::parse(&listed.to_toml(), Path::new("o.toml")).unwrap();
             assert!(
-                bits(&read.effects(&Machine::xt28())) == alone,
+                bits(&read.effects(&Machine::xt28()).unwrap()) == alone,
                 "{} at severity zero shows",
                 effect.name
             );
@@ -126,7 +131,7 @@ fn every_effect_fades_in_from_what_the_machine_file_says() {
 fn fades_in(machine: &Machine) {
     let nominal = trace_of(machine, &Effects::default(), 400);
     for effect in CATALOGUE {
-        let with = trace_of(machine, &overlay(&[effect], 1e-6).effects(machine), 400);
+        let with = trace_of(machine, &overlay(&[effect], 1e-6).effects(machine).unwrap(), 400);
         let most = |signal: Signal| {
             let both = with.iter().zip(&nominal).map(|(a, b)| (signal(a), signal(b)));
             let apart = both.flat_map(|(a, b)| a.into_iter().zip(b).map(|(a, b)| (a - b).abs()));

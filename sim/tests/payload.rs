@@ -7,7 +7,7 @@ use xt28_sim::effects::Overlay;
 use xt28_sim::{Actuation, Effects, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
 
 fn overlay(text: &str) -> Effects {
-    Overlay::parse(text, Path::new("o.toml")).unwrap().effects(&Machine::xt28())
+    Overlay::parse(text, Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap()
 }
 
 /// The state after 8 s at rest on level ground, wheels free to roll: braked, they push against one

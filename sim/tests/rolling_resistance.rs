@@ -11,7 +11,10 @@ use xt28_sim::{
 fn added(added: f64, scope: &str) -> Effects {
     let text =
         format!("[[effect]]\nname = \"rolling-resistance\"\nscope = \"{scope}\"\nadded = {added}");
-    Overlay::parse(&text, std::path::Path::new("o.toml")).unwrap().effects(&Machine::xt28())
+    Overlay::parse(&text, std::path::Path::new("o.toml"))
+        .unwrap()
+        .effects(&Machine::xt28())
+        .unwrap()
 }
 
 /// After 2 s of standing and 18 s of rolling.

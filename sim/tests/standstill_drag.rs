@@ -35,7 +35,8 @@ fn weighed_n(s: &VehicleState, axle: Axle) -> f64 {
 #[test]
 fn wheels_that_hold_pinch_and_the_cylinders_weigh_it() {
     let held = "[[effect]]\nname = \"standstill-drag\"\ntorque_nm = 5000";
-    let held = Overlay::parse(held, Path::new("o.toml")).unwrap().effects(&Machine::xt28());
+    let held =
+        Overlay::parse(held, Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap();
     let (free, held) = (extend(&Effects::default()), extend(&held));
     let false_n = |s: &VehicleState, axle: Axle| {
         let on = Wheel::ALL.into_iter().filter(|wheel| wheel.axle() == axle);

@@ -5,7 +5,7 @@ use xt28_sim::effects::{Overlay, SoftTyre};
 use xt28_sim::{Actuation, Effects, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
 
 fn overlay(text: &str) -> Effects {
-    Overlay::parse(text, std::path::Path::new("o.toml")).unwrap().effects(&Machine::xt28())
+    Overlay::parse(text, std::path::Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap()
 }
 
 fn vehicle(machine: &Machine, effects: &Effects, terrain: &Terrain) -> Vehicle {

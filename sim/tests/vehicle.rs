@@ -180,7 +180,8 @@ fn blocks_with_effects_alone_reproduce_the_whole() {
     let loose = text("steer-backlash", "width_rad = 0.03")
         + &text("engine-droop", "droop_per_w = 2e-6\npower_factor = 0.4");
     for text in [late, slow, loose] {
-        let effects = Overlay::parse(&text, Path::new("o.toml")).unwrap().effects(&Machine::xt28());
+        let effects =
+            Overlay::parse(&text, Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap();
         assert_ne!(effects, Effects::default());
         reproduced(&effects);
     }

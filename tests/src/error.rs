@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use ecu_emu::OperatorError;
 use xt28_machine::MachineError;
 use xt28_sim::TerrainError;
+use xt28_sim::effects::OverlayError;
 
 /// Why a scenario was refused.
 #[derive(Debug, thiserror::Error)]
@@ -86,6 +87,9 @@ pub enum SetupError {
     /// A height map of the terrain is refused.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
+    /// An effect is none that the machine can have.
+    #[error(transparent)]
+    Effects(#[from] OverlayError),
 }
 
 impl ScenarioError {

@@ -20,6 +20,7 @@ use xt28_bus::{Bitrate, NodeId, VirtualBus, candump};
 use xt28_dbc::Outbox;
 use xt28_machine::SimTime;
 use xt28_sim::STEP;
+use xt28_sim::effects::OverlayError;
 
 use crate::decode::Decoder;
 use crate::digest::HashingWriter;
@@ -54,6 +55,9 @@ pub enum RunError {
         /// What the gateway said.
         source: SpecError,
     },
+    /// An effect is none that the machine can have.
+    #[error(transparent)]
+    Effects(#[from] OverlayError),
     /// The log could not be written.
     #[error("cannot write the log: {0}; is the disk full?")]
     Log(#[from] io::Error),
@@ -66,7 +70,7 @@ impl<W: Write> Lockstep<W> {
     /// Everything at rest at time zero; the log goes to `log`.
     ///
     /// # Errors
-    /// [`RunError::Policy`].
+    /// [`RunError::Policy`], [`RunError::Effects`].
     pub fn new(setup: &Setup, log: W) -> Result<Self, RunError> {
         let Setup { scenario, machine, overlay, solver, terrain, seed, .. } = setup;
         let policy = setup
@@ -75,7 +79,7 @@ impl<W: Write> Lockstep<W> {
         let mut bus = VirtualBus::new(Bitrate::MBIT_1);
         bus.enable_tap();
         let config = EmulatorConfig {
-            effects: overlay.effects(machine),
+            effects: overlay.effects(machine)?,
             solver: *solver,
             mishaps: scenario.mishaps(),
             profile: scenario.profile,

@@ -34,7 +34,8 @@ impl Setup {
     /// Loads what `scenario` names; `seed` overrides its own.
     ///
     /// # Errors
-    /// The machine file is refused, or a height map that the terrain names.
+    /// The machine file is refused, a height map that the terrain names, or more load than the machine
+    /// carries.
     pub fn new(scenario: Scenario, seed: Option<u64>) -> Result<Self, SetupError> {
         let machine = match &scenario.machine {
             Some(path) => Machine::load(path)?,
@@ -42,6 +43,7 @@ impl Setup {
         };
         let seed = seed.unwrap_or(scenario.seed);
         let overlay = Overlay { entries: scenario.effects.clone() };
+        overlay.effects(&machine)?;
         let terrain = scenario.terrain.spec.build()?;
         let map = scenario.terrain.spec.build_map(&terrain)?;
         Ok(Self { scenario, machine, overlay, solver: Solver::default(), terrain, map, seed })

@@ -69,6 +69,17 @@ pub enum OverlayError {
         /// What is wrong there, and what to write instead.
         problem: String,
     },
+    /// More load than the machine file allows.
+    #[error(
+        "payload: mass_kg = {mass_kg} is more than this machine carries; its machine file has \
+         masses.load_max_kg = {load_max_kg}"
+    )]
+    Overloaded {
+        /// The load, kg.
+        mass_kg: f64,
+        /// The most, kg.
+        load_max_kg: f64,
+    },
 }
 
 impl Overlay {
@@ -109,11 +120,17 @@ impl Overlay {
     }
 
     /// The values of all its effects on this machine, neutral elsewhere.
-    #[must_use]
-    pub fn effects(&self, machine: &Machine) -> Effects {
+    ///
+    /// # Errors
+    /// [`OverlayError::Overloaded`]: the machine file has the largest load (paper, table of the machine).
+    pub fn effects(&self, machine: &Machine) -> Result<Effects, OverlayError> {
         let mut effects = Effects::default();
         self.entries.iter().for_each(|entry| entry.apply(machine, &mut effects));
-        effects
+        let (mass_kg, load_max_kg) = (effects.masses.payload.mass_kg, machine.masses.load_max_kg);
+        if mass_kg > load_max_kg {
+            return Err(OverlayError::Overloaded { mass_kg, load_max_kg });
+        }
+        Ok(effects)
     }
 
     /// The file that reads back as this overlay.
@@ -193,16 +210,23 @@ impl Entry {
         Ok(entry)
     }
 
+    /// What `said` of a parameter comes to at this severity.
+    fn value(&self, machine: &Machine, parameter: &Parameter, said: f64) -> f64 {
+        if self.severity == 0.0 {
+            return parameter.neutral;
+        }
+        let own = parameter.neutral_on(machine);
+        let value = if self.severity == 1.0 { said } else { own + self.severity * (said - own) };
+        // Neutral stands for the machine's own number. Where that is another, who says the very number
+        // means it: a last bit more says so.
+        let is_said = value == parameter.neutral && value != own;
+        if is_said { value.next_up() } else { value }
+    }
+
     /// Sets its parameters in `effects`, which are those of this machine.
     pub fn apply(&self, machine: &Machine, effects: &mut Effects) {
         for (parameter, value) in &self.values {
-            let own = parameter.neutral_on(machine);
-            let value =
-                if self.severity == 1.0 { *value } else { own + self.severity * (value - own) };
-            // Neutral stands for the machine file's own number. Where that is another, who says the very
-            // number means it: a last bit more says so.
-            let is_said = value == parameter.neutral && value != own;
-            parameter.set(effects, self.scope, if is_said { value.next_up() } else { value });
+            parameter.set(effects, self.scope, self.value(machine, parameter, *value));
         }
     }
 }
@@ -244,15 +268,32 @@ mod tests {
         let overlay = Overlay { entries: entries.collect() };
         let again = parse(&overlay.to_toml()).unwrap();
         let machine = Machine::xt28();
-        assert_eq!(again.effects(&machine), overlay.effects(&machine));
-        assert_ne!(again.effects(&machine), Effects::default());
+        let [again, overlay] = [again, overlay].map(|o| o.effects(&machine).unwrap());
+        assert_eq!(again, overlay);
+        assert_ne!(again, Effects::default());
     }
 
     #[test]
     fn severity_zero_is_the_nominal_plant() {
         let text =
             "[[effect]]\nname = \"arm-delay\"\nscope = \"front\"\nseverity = 0\ndelay_s = 0.2";
-        assert_eq!(parse(text).unwrap().effects(&Machine::xt28()), Effects::default());
+        let effects = parse(text).unwrap().effects(&Machine::xt28()).unwrap();
+        assert_eq!(effects, Effects::default());
+    }
+
+    #[test]
+    fn more_than_the_machine_carries_is_refused() {
+        let mut machine = Machine::xt28();
+        machine.masses.load_max_kg = 8000.0;
+        let payload = |severity: f64| {
+            let text = "[[effect]]\nname = \"payload\"\nmass_kg = 14000\nseverity =";
+            parse(&format!("{text} {severity}")).unwrap()
+        };
+        assert_eq!(payload(0.5).effects(&machine).unwrap().masses.payload.mass_kg, 7000.0);
+        assert!(payload(1.0).effects(&Machine::xt28()).is_ok());
+        let error = payload(1.0).effects(&machine).unwrap_err().to_string();
+        assert!(error.starts_with("payload: mass_kg = 14000 is more"), "{error}");
+        assert!(error.ends_with("masses.load_max_kg = 8000"), "{error}");
     }
 
     #[test]

@@ -38,7 +38,7 @@ impl Effects {
     pub fn none_on(machine: &Machine) -> Self {
         let soft_tyre = SoftTyre::of(machine);
         let wheels = PerWheel::splat(WheelEffects { soft_tyre, ..WheelEffects::default() });
-        Self { wheels, ..Self::default() }
+        Self { wheels, pump_flow: PumpFlowLimit::ample_on(machine), ..Self::default() }
     }
 }
 

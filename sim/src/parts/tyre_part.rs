@@ -96,8 +96,10 @@ mod tests {
                         "[[effect]]\nname = \"soft-tyres\"\nseverity = {severity}\nstiffness_n_m = {said}"
                     );
                     let overlay = Overlay::parse(&text, Path::new("o.toml")).unwrap();
-                    let tyre =
-                        TyrePart::new(&machine, &overlay.effects(&machine).wheels[Wheel::Ml]);
+                    let tyre = TyrePart::new(
+                        &machine,
+                        &overlay.effects(&machine).unwrap().wheels[Wheel::Ml],
+                    );
                     let wanted = own + severity * (said - own);
                     let apart = (tyre.stiffness_n_m / wanted - 1.0).abs();
                     let is_bound = if severity == 0.0 { apart == 0.0 } else { apart < 1e-15 };

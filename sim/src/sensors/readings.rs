@@ -84,7 +84,7 @@ mod tests {
         let text = format!("[[effect]]\n{effect}");
         let overlay = Overlay::parse(&text, std::path::Path::new("test")).unwrap();
         let read = |effects: &Effects| Sensors::new(effects).read(&state());
-        (read(&Effects::default()), read(&overlay.effects(&Machine::xt28())))
+        (read(&Effects::default()), read(&overlay.effects(&Machine::xt28()).unwrap()))
     }
 
     #[test]

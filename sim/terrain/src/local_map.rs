@@ -40,9 +40,6 @@ impl Default for LocalMap {
 }
 
 impl LocalMap {
-    /// Standard deviation of a height that the machine reads, m (paper 4.4).
-    pub const NOISE_M: f64 = 0.045;
-
     /// Number of heights.
     #[must_use]
     pub const fn len(&self) -> usize {
@@ -148,13 +145,14 @@ mod tests {
 
     #[test]
     fn noise_is_that_of_its_seed_and_as_large_as_asked_for() {
+        const NOISE_M: f64 = 0.045;
         let read = |seed| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let mut heights = Vec::new();
             LocalMap::default().read_noisy(
                 &Terrain::Flat,
                 &MapPose::default(),
-                LocalMap::NOISE_M,
+                NOISE_M,
                 &mut rng,
                 &mut heights,
             );
@@ -167,7 +165,7 @@ mod tests {
         let mean = all.iter().sum::<f64>() / count;
         let spread = (all.iter().map(|h| (h - mean).powi(2)).sum::<f64>() / count).sqrt();
         assert!(mean.abs() < 0.002, "{mean}");
-        assert!((spread / LocalMap::NOISE_M - 1.0).abs() < 0.03, "{spread}");
+        assert!((spread / NOISE_M - 1.0).abs() < 0.03, "{spread}");
     }
 
     proptest! {

@@ -66,7 +66,7 @@ impl Replay {
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let replay =
-            Run::run(&log, &machine, &effects.effects(&machine), self.solver, &self.ground()?)?;
+            Run::run(&log, &machine, &effects.effects(&machine)?, self.solver, &self.ground()?)?;
         let report = replay.report(&log, &self.dbc);
         if self.json {
             say!("{:#}\n", report.json());

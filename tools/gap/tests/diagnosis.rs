@@ -86,7 +86,8 @@ fn fitted_after(
     let overlay = Overlay::parse(overlay, Path::new("test")).unwrap();
     let machine = Machine::xt28();
     let replay =
-        Replay::run(&log, &machine, &overlay.effects(&machine), Solver::Rapier, &terrain).unwrap();
+        Replay::run(&log, &machine, &overlay.effects(&machine).unwrap(), Solver::Rapier, &terrain)
+            .unwrap();
     let mut series = replay.all_series().clone();
     for (channel, samples) in log.all_series() {
         if channel.is_command() {

@@ -11,7 +11,7 @@ use xt28_sim::effects::{Block, Overlay};
 
 fn weak_steering() -> Effects {
     let text = "[[effect]]\nname = \"steer-gain\"\nkp_factor = 0.3\n";
-    Overlay::parse(text, Path::new("weak.toml")).unwrap().effects(&Machine::xt28())
+    Overlay::parse(text, Path::new("weak.toml")).unwrap().effects(&Machine::xt28()).unwrap()
 }
 
 fn inquiry(runs: Vec<FieldRun>) -> Inquiry {

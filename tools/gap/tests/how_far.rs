@@ -34,7 +34,7 @@ fn cause_of(effect: &'static Effect, scope: Scope, parameters: Vec<Estimate>) ->
 
 /// The machine of these causes on two manoeuvres; the first is fitted, the second held out.
 fn driven(causes: &[Cause]) -> HowFar {
-    let effects = overlay(causes).effects(&Machine::xt28());
+    let effects = overlay(causes).effects(&Machine::xt28()).unwrap();
     let run = |name: &str, fit: bool| own_logs::run(name, &effects, fit);
     let runs = vec![run("arms", true), run("drive", false)];
     HowFar::new(&Inquiry::new(Machine::xt28(), runs)).unwrap()
@@ -146,7 +146,7 @@ proptest! {
             .collect();
         let written = overlay(&causes);
         let read = Overlay::parse(&written.to_toml(), Path::new("overlay.toml")).unwrap();
-        prop_assert_eq!(read.effects(&Machine::xt28()), written.effects(&Machine::xt28()));
+        prop_assert_eq!(read.effects(&Machine::xt28()).unwrap(), written.effects(&Machine::xt28()).unwrap());
     }
 }
 

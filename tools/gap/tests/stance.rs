@@ -20,7 +20,8 @@ fn fits(overlay: &str, runs: &[&str]) -> Option<Vec<Fit>> {
         let _ = writeln!(io::stdout(), "SKIPPED: {} is not there", folder.display());
         return None;
     }
-    let effects = Overlay::parse(overlay, Path::new("test")).unwrap().effects(&Machine::xt28());
+    let effects =
+        Overlay::parse(overlay, Path::new("test")).unwrap().effects(&Machine::xt28()).unwrap();
     let machine = Machine::xt28();
     let decoder = Decoder::load(&folder.join("xt28-field.dbc"), &Mapping::default()).unwrap();
     let answer = |name: &&str| {

@@ -1,9 +1,15 @@
 //! `pump-flow-limit`: one pump shared by arms and steering runs short.
 
+use xt28_machine::Machine;
+
+use crate::FlowSharing;
 use crate::effects::{Block, Effect, Parameter, Slot};
 
-/// Flow at which the pump never runs short, m³/s: above what all valves take when fully open.
+/// Flow at which the pump never runs short, m³/s: above what all valves take when fully open. As a value
+/// it stands for a pump that never does, whatever the machine's valves take.
 const AMPLE_M3_S: f64 = 0.012;
+/// What such a pump delivers over what all valves of another machine take (assumed).
+const AMPLE_FACTOR: f64 = 1.1;
 
 /// The most that the load-sensing pump delivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,13 +25,22 @@ impl Default for PumpFlowLimit {
 }
 
 impl PumpFlowLimit {
+    /// A pump that never runs short on this machine: six arms and both joints at once.
+    #[must_use]
+    pub(in crate::effects) fn ample_on(machine: &Machine) -> Self {
+        let joint_rad_s = machine.articulation.rate_max_deg_s.to_radians();
+        let joint_m3_s = FlowSharing::new(machine, Self::default()).joint_m3_s(joint_rad_s);
+        let all_m3_s = 6.0 * machine.hydraulics.flow_full_m3_s + 2.0 * joint_m3_s;
+        Self { flow_m3_s: AMPLE_M3_S.max(AMPLE_FACTOR * all_m3_s) }
+    }
+
     /// Share of `demand_m3_s` that the pump delivers, 0 to 1.
     ///
     /// Valves that share flow whatever their loads (the compensator behind the spool) close alike
     /// when the pump runs short: every consumer gets this share.
     #[must_use]
     pub fn share(&self, demand_m3_s: f64) -> f64 {
-        let short = self.flow_m3_s < AMPLE_M3_S && demand_m3_s > self.flow_m3_s;
+        let short = self.flow_m3_s != AMPLE_M3_S && demand_m3_s > self.flow_m3_s;
         if short { self.flow_m3_s / demand_m3_s } else { 1.0 }
     }
 }
@@ -47,7 +62,10 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::effects::Overlay;
 
     #[test]
     fn a_short_pump_is_shared_and_an_ample_one_is_not() {
@@ -56,5 +74,23 @@ mod tests {
         assert_eq!(pump.share(0.002), 1.0);
         assert!((pump.share(0.005) - 0.4).abs() < 1e-12);
         assert_eq!(PumpFlowLimit::default().share(0.05), 1.0);
+    }
+
+    /// The pump of a machine with valves twice as large runs short where theirs begin to, not at a jump.
+    #[test]
+    fn a_larger_machines_pump_runs_short_from_what_its_valves_take() {
+        let mut machine = Machine::xt28();
+        machine.hydraulics.flow_full_m3_s *= 2.0;
+        machine.arms.area_bore_m2 *= 2.0;
+        let share = |severity: f64| {
+            let text = "[[effect]]\nname = \"pump-flow-limit\"\nflow_m3_s = 0.001\nseverity =";
+            let overlay = Overlay::parse(&format!("{text} {severity}"), Path::new("o.toml"));
+            let pump = overlay.unwrap().effects(&machine).unwrap().pump_flow;
+            FlowSharing::new(&machine, pump).share(6.0 * machine.hydraulics.flow_full_m3_s)
+        };
+        assert_eq!([share(0.0), share(1e-6)], [1.0, 1.0]);
+        assert!((share(1.0) - 0.05).abs() < 1e-4, "{}", share(1.0));
+        let half_m3_s = 0.5 * (PumpFlowLimit::ample_on(&machine).flow_m3_s + 0.001);
+        assert!((share(0.5) - half_m3_s / 0.02).abs() < 1e-4, "{}", share(0.5));
     }
 }

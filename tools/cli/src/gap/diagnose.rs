@@ -149,7 +149,7 @@ impl Diagnose {
         let mut inquiry = set.into_inquiry(machine, &choice, self.accept_wheel_order)?;
         let mut notes = vec![split(&inquiry, &left, &choice.why)];
         notes.extend(remarks);
-        inquiry.believed = believed.effects(&inquiry.machine);
+        inquiry.believed = believed.effects(&inquiry.machine)?;
         inquiry.how_far = !self.no_how_far;
         Ok((inquiry, notes))
     }

@@ -89,7 +89,7 @@ impl Where {
             eprintln!("{remark}");
         }
         let evidence =
-            Evidence::new(&runs, &machine, effects.effects(&machine), &Knob::tolerances());
+            Evidence::new(&runs, &machine, effects.effects(&machine)?, &Knob::tolerances());
         let mut gaps = evidence.gaps();
         // The largest first; what has none comes last.
         gaps.sort_by(|(_, a), (_, b)| b.unwrap_or(-1.0).total_cmp(&a.unwrap_or(-1.0)));

@@ -57,14 +57,16 @@ fn converted(mv: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use xt28_ecus::pins::Calibration;
+
     use super::*;
     use crate::{Cab, wiring};
 
     fn pins() -> Pins {
         let readings = xt28_sim::Readings::default();
         Pins {
-            arm: wiring::arm_pins(&readings),
-            drive: wiring::drive_pins(&readings),
+            arm: wiring::arm_pins(&readings, &Calibration::default()),
+            drive: wiring::drive_pins(&readings, &Calibration::default()),
             cab: Cab::default().pins(),
         }
     }

@@ -6,6 +6,7 @@ use xt28_dbc::messages::{Eec1, LeftPadButtons};
 use xt28_dbc::{Frame, Outbox};
 use xt28_ecus::Profile;
 use xt28_ecus::firmware_2016::Quirks;
+use xt28_ecus::pins::Calibration;
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::{
     Actuation, Effects, GnssReceiver, Held, Imu, STEP, Sensors, Solver, Terrain, Track,
@@ -92,6 +93,7 @@ pub struct Emulator {
     engine: Engine,
     engine_speaker: EngineSpeaker,
     sensors: Sensors,
+    calibration: Calibration,
     sensor_faults: SensorFaults,
     acquisition: Acquisition,
     supplies: Supplies,
@@ -135,6 +137,11 @@ impl Emulator {
             engine,
             engine_speaker: EngineSpeaker::new(machine.drive.engine_torque_max_nm),
             sensors: Sensors::new(effects),
+            calibration: match config.profile {
+                Profile::Paper => Calibration::of(machine),
+                // That firmware has its sensors' spans in its code.
+                Profile::Firmware2016 => Calibration::default(),
+            },
             sensor_faults: SensorFaults::new(&config.mishaps.faults, config.seed),
             acquisition: Acquisition::new(config.seed),
             supplies: Supplies::new(&config.mishaps.events),
@@ -206,8 +213,8 @@ impl Emulator {
         let cab = self.operator.cab(now);
         self.hear_wires(now, &state, &cab);
         let mut pins = Pins {
-            arm: wiring::arm_pins(&readings),
-            drive: wiring::drive_pins(&readings),
+            arm: wiring::arm_pins(&readings, &self.calibration),
+            drive: wiring::drive_pins(&readings, &self.calibration),
             cab: cab.pins(),
         };
         self.sensor_faults.apply(now, &mut pins);
@@ -302,6 +309,7 @@ impl Clone for Emulator {
             engine: self.engine.clone(),
             engine_speaker: self.engine_speaker.clone(),
             sensors: self.sensors.clone(),
+            calibration: self.calibration,
             sensor_faults: self.sensor_faults.clone(),
             acquisition: self.acquisition.clone(),
             supplies: self.supplies.clone(),

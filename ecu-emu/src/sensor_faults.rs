@@ -277,7 +277,7 @@ fn named<T: serde::de::DeserializeOwned>(name: &str) -> Result<T, String> {
 
 #[cfg(test)]
 mod tests {
-    use xt28_ecus::pins;
+    use xt28_ecus::pins::{self, Calibration};
     use xt28_machine::PerWheel;
 
     use super::*;
@@ -291,8 +291,8 @@ mod tests {
             ..xt28_sim::Readings::default()
         };
         Pins {
-            arm: wiring::arm_pins(&readings),
-            drive: wiring::drive_pins(&readings),
+            arm: wiring::arm_pins(&readings, &Calibration::default()),
+            drive: wiring::drive_pins(&readings, &Calibration::default()),
             cab: Cab::default().pins(),
         }
     }

@@ -1,6 +1,7 @@
 //! The harness: plant sensors to ECU pins, ECU outputs to plant actuators. No laws, only wires.
 
 use xt28_dbc::Frame;
+use xt28_ecus::pins::Calibration;
 use xt28_ecus::{ArmOutputs, ArmPins, DriveOutputs, DrivePins, pins};
 use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::{Actuation, ImuSample, Readings, VehicleState};
@@ -11,9 +12,9 @@ use crate::EmulatorConfig;
 const SUPPLY_MV: f64 = 24_000.0;
 
 /// What the pendulum-arm ECU's sensors put on its pins.
-pub(crate) fn arm_pins(s: &Readings) -> ArmPins {
+pub(crate) fn arm_pins(s: &Readings, sensors: &Calibration) -> ArmPins {
     ArmPins {
-        stroke_mv: s.stroke_m.map(pins::stroke_mv),
+        stroke_mv: s.stroke_m.map(|stroke_m| sensors.stroke_mv(stroke_m)),
         pressure_a_mv: s.pressure_a_pa.map(pins::pressure_mv),
         pressure_b_mv: s.pressure_b_pa.map(pins::pressure_mv),
         supply_mv: SUPPLY_MV,
@@ -21,10 +22,10 @@ pub(crate) fn arm_pins(s: &Readings) -> ArmPins {
 }
 
 /// What the transmission ECU's sensors put on its pins.
-pub(crate) fn drive_pins(s: &Readings) -> DrivePins {
+pub(crate) fn drive_pins(s: &Readings, sensors: &Calibration) -> DrivePins {
     DrivePins {
-        joint_front_mv: pins::joint_front_mv(s.joint_rad[0]),
-        joint_rear_mv: pins::joint_rear_mv(s.joint_rad[1]),
+        joint_front_mv: sensors.joint_front_mv(s.joint_rad[0]),
+        joint_rear_mv: sensors.joint_rear_mv(s.joint_rad[1]),
         wheel_hz: s.wheel_speed_rad_s.map(pins::wheel_hz),
         wheel_forward: s.wheel_speed_rad_s.map(|rad_s| rad_s >= 0.0),
         pump_mv: s.pump_pressure_pa.map(pins::pump_mv),

@@ -28,6 +28,7 @@ pub use self::steering::SteeringGains;
 use crate::command_stream::CommandStream;
 use crate::diagnostics::{DRIVE, Diagnostics, DriveData, DriveMonitor, DriveSeen};
 use crate::life::{Commanded, Health, Request, SELF_TEST, State};
+use crate::pins::Calibration;
 use crate::power::{Cause, Power, Running};
 use crate::{Port, Refusal, pins};
 
@@ -100,6 +101,7 @@ pub struct DriveEcu {
     steering: Steering,
     brake: ParkingBrake,
     engine: EngineLink,
+    sensors: Calibration,
     wheel_radius_m: f64,
     status_counter: AliveCounter,
     wheel_counter: AliveCounter,
@@ -131,10 +133,11 @@ impl DriveEcu {
             steering: Steering::new(&machine.articulation),
             brake: ParkingBrake::default(),
             engine: EngineLink::new(machine.drive.engine_speed_rpm),
+            sensors: Calibration::of(&machine),
             wheel_radius_m: machine.wheels.radius_m,
             status_counter: AliveCounter::default(),
             wheel_counter: AliveCounter::default(),
-            monitor: DriveMonitor::new(),
+            monitor: DriveMonitor::new(&machine),
             diagnostics,
             power: Power::default(),
             restarted_by: None,
@@ -185,7 +188,7 @@ impl DriveEcu {
             Running::Started(cause) => self.restart(cause),
             Running::Off => return out.go_dark(),
         }
-        let readings = sensing::read(pins, self.wheel_radius_m);
+        let readings = sensing::read(pins, &self.sensors, self.wheel_radius_m);
         let demand = self.commands.fresh(now);
         let (health, faults) = self.diagnose(now, pins, demand.is_none());
         let commanded = demand.map(|d| Commanded {

@@ -4,10 +4,12 @@
 //! mV, facts 3.2): a sensor that saturates is not a broken wire. A voltage or current that is not a
 //! number reads as the lower end of its range, so nothing behind the pins ever sees NaN.
 
+mod calibration;
 mod hydraulic;
 mod imu;
 mod sensor;
 
+pub use calibration::Calibration;
 pub use hydraulic::{
     motor_displacement, motor_ma, pump_displacement, pump_ma, steer_ma, steer_opening, valve_ma,
     valve_opening,

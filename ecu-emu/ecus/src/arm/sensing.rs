@@ -4,15 +4,15 @@ use xt28_machine::{Linkage, Machine, PerWheel, Wheel};
 
 use super::ArmPins;
 use crate::input_check::in_range;
-use crate::pins;
+use crate::pins::{self, Calibration};
 
 /// Coefficient of the pressure filter: 1 Hz at 100 Hz (facts 3.2).
 const PRESSURE_KEEP: f64 = 0.94088;
 /// Stroke rate filter: v = trunc(v / 1.1 + 5 / 1.1 * change), change in whole mm a tick.
 const RATE_DIVISOR: f64 = 1.1;
 const RATE_GAIN: f64 = 5.0;
-/// Closed cylinder length in the force code, m; 30 mm less than in the height code (facts 1.4).
-const FORCE_CLOSED_LENGTH_M: f64 = 0.82;
+/// What a closed cylinder is shorter in the force code than in the height code, m (facts 1.4).
+const FORCE_SHORTER_M: f64 = 0.03;
 /// What a signed 16-bit signal can say.
 const WORD_MAX: f64 = 32_767.0;
 /// Keeps a value that should be whole from falling one short by the rounding of its sums.
@@ -38,6 +38,7 @@ pub(crate) struct ArmReadings {
 /// Filters and estimates.
 #[derive(Clone, Debug)]
 pub(crate) struct ArmSensing {
+    sensors: Calibration,
     linkage: Linkage,
     area_bore_m2: f64,
     area_rod_m2: f64,
@@ -48,8 +49,10 @@ pub(crate) struct ArmSensing {
 
 impl ArmSensing {
     pub(crate) fn new(machine: &Machine) -> Self {
+        let closed_length_m = machine.arms.closed_length_m - FORCE_SHORTER_M;
         Self {
-            linkage: machine.linkage().with_closed_length(FORCE_CLOSED_LENGTH_M),
+            sensors: Calibration::of(machine),
+            linkage: machine.linkage().with_closed_length(closed_length_m),
             area_bore_m2: machine.arms.area_bore_m2,
             area_rod_m2: machine.arms.area_rod_m2,
             last: None,
@@ -58,7 +61,7 @@ impl ArmSensing {
 
     /// Readings of this tick.
     pub(crate) fn step(&mut self, pins: &ArmPins) -> ArmReadings {
-        let stroke_mm = pins.stroke_mv.map(|mv| whole(pins::stroke_m(mv) * 1e3));
+        let stroke_mm = pins.stroke_mv.map(|mv| whole(self.sensors.stroke_m(mv) * 1e3));
         let raw_a_kpa = pins.pressure_a_mv.map(|mv| whole(pins::pressure_pa(mv) * 1e-3));
         let raw_b_kpa = pins.pressure_b_mv.map(|mv| whole(pins::pressure_pa(mv) * 1e-3));
         let last = self.last.unwrap_or(ArmReadings {
@@ -180,5 +183,22 @@ mod tests {
         assert_eq!(readings.load_dan[Wheel::Mr], 5652.0 - 294.0);
         let force_dan = readings.wheel_force_dan[Wheel::Mr];
         assert!((force_dan - 0.4991 * 5358.0).abs() < 1.0, "{force_dan}");
+    }
+
+    /// Another machine's cylinders are read over their own stroke, and weighed by their own linkage.
+    #[test]
+    fn another_machines_cylinders_are_its_own() {
+        let mut machine = Machine::xt28();
+        (machine.arms.stroke_max_m, machine.arms.closed_length_m) = (0.7, 0.9);
+        let sensors = Calibration::of(&machine);
+        let pins = ArmPins {
+            stroke_mv: PerWheel::splat(sensors.stroke_mv(0.65)),
+            ..pins_at(0.0, 7.201e6, 0.5e6)
+        };
+        let readings = ArmSensing::new(&machine).step(&pins);
+        assert_eq!(readings.stroke_mm, PerWheel::splat(650.0));
+        let ratio = machine.linkage().with_closed_length(0.87).at_stroke(0.65).force_ratio;
+        let force_dan = readings.wheel_force_dan[Wheel::Mr];
+        assert!((force_dan - ratio * 5358.0).abs() < 1.0, "{force_dan}");
     }
 }

@@ -10,6 +10,7 @@ use super::trouble_code::Fmi;
 use crate::arm::ArmPins;
 use crate::input_check::{InputCheck, Supply};
 use crate::life::{Health, PERIOD_S};
+use crate::pins::Calibration;
 use crate::power::Cause;
 
 /// Fault bits of the status frame.
@@ -20,10 +21,10 @@ mod fault {
     pub(super) const SUPPLY: u16 = 1 << 3;
 }
 
-/// No cylinder moves faster, m/s: three times its speed at full flow (facts 1.2, assumed factor).
+/// No cylinder that a valve moves at `SPEED_FULL_M_S` moves faster, m/s: three times what it retracts with
+/// at full flow (facts 1.2, assumed factor). Others are measured by their own full speed.
 const STROKE_RATE_MAX_M_S: f64 = 0.85;
-/// Of a position sensor, mV a metre (facts 3.2).
-const STROKE_MV_PER_M: f64 = 4_000.0 / 0.485;
+const SPEED_FULL_M_S: f64 = 0.212;
 
 /// What the ECU knows of itself at a task period, besides its pins.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +66,9 @@ pub(crate) struct ArmMonitor {
 
 impl ArmMonitor {
     pub(crate) fn new(machine: &Machine) -> Self {
-        let step_mv = STROKE_RATE_MAX_M_S * PERIOD_S * STROKE_MV_PER_M;
+        let rate_max_m_s =
+            STROKE_RATE_MAX_M_S * (machine.hydraulics.speed_full_m_s / SPEED_FULL_M_S);
+        let step_mv = rate_max_m_s * PERIOD_S * Calibration::of(machine).stroke_mv_per_m();
         Self {
             strokes: PerWheel::splat(InputCheck::of_motion(step_mv)),
             stalls: PerWheel::splat(StallCheck::default()),

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use xt28_machine::{PerWheel, SimTime};
+use xt28_machine::{Machine, PerWheel, SimTime};
 
 use super::STREAMS_DUE;
 use super::fault_memory::FaultMemory;
@@ -11,6 +11,7 @@ use super::trouble_code::Fmi;
 use crate::drive::DrivePins;
 use crate::input_check::{InputCheck, Supply};
 use crate::life::{Health, PERIOD_S};
+use crate::pins::Calibration;
 use crate::power::Cause;
 
 /// Fault bits of the status frame.
@@ -24,8 +25,6 @@ mod fault {
 
 /// No joint turns faster, deg/s (assumed).
 const JOINT_RATE_MAX_DEG_S: f64 = 100.0;
-/// Steepest of the joint sensors: front, to the right (facts 4.6), mV a degree.
-const JOINT_MV_PER_DEG: f64 = (3_296.0 - 1_727.0) / 25.0;
 /// The other wheels' mean above which one that reads nothing is missed, Hz: 0.3 m/s (assumed).
 const ROLLING_HZ: f64 = 210.0;
 /// A wheel that turns at all reads more than this, Hz.
@@ -55,8 +54,9 @@ pub(crate) struct DriveMonitor {
 }
 
 impl DriveMonitor {
-    pub(crate) fn new() -> Self {
-        let step_mv = JOINT_RATE_MAX_DEG_S * PERIOD_S * JOINT_MV_PER_DEG;
+    pub(crate) fn new(machine: &Machine) -> Self {
+        let mv_per_deg = Calibration::of(machine).joint_mv_per_deg();
+        let step_mv = JOINT_RATE_MAX_DEG_S * PERIOD_S * mv_per_deg;
         Self {
             joints: [InputCheck::of_motion(step_mv); 2],
             pumps: [InputCheck::default(); 4],

@@ -3,7 +3,7 @@
 use xt28_machine::PerWheel;
 
 use super::DrivePins;
-use crate::pins;
+use crate::pins::{self, Calibration};
 
 /// What the sensors say.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,11 +19,11 @@ pub(crate) struct DriveReadings {
 }
 
 /// Readings of a tick, with wheels of `radius_m`.
-pub(crate) fn read(pins: &DrivePins, radius_m: f64) -> DriveReadings {
+pub(crate) fn read(pins: &DrivePins, sensors: &Calibration, radius_m: f64) -> DriveReadings {
     let wheel_rad_s =
         PerWheel::from_fn(|w| pins::wheel_rad_s(pins.wheel_hz[w], pins.wheel_forward[w]));
     let joint_rad =
-        [pins::joint_front_rad(pins.joint_front_mv), pins::joint_rear_rad(pins.joint_rear_mv)];
+        [sensors.joint_front_rad(pins.joint_front_mv), sensors.joint_rear_rad(pins.joint_rear_mv)];
     DriveReadings {
         joint_deg: joint_rad.map(f64::to_degrees),
         wheel_rad_s,

@@ -2,39 +2,34 @@
 
 use core::f64::consts::TAU;
 
+use super::Calibration;
+
 /// What a sensor can put out, mV (assumed; inside the diagnosis window).
 const OUTPUT_MV: [f64; 2] = [300.0, 4700.0];
 /// Every linear sensor here has its zero at 0.5 V and its span in the next 4 V (facts 3.2, 4.9).
 const ZERO_MV: f64 = 500.0;
-const SPAN_MV: f64 = 4000.0;
+pub(super) const SPAN_MV: f64 = 4000.0;
 
-/// Stroke over the span of a position input, m (facts 3.2).
-const STROKE_SPAN_M: f64 = 0.485;
 /// Chamber pressure over the span of a pressure input, Pa (facts 3.2).
 const PRESSURE_SPAN_PA: f64 = 25.0e6;
 /// Pump pressure over the span of its input, Pa (facts 4.9).
 const PUMP_SPAN_PA: f64 = 60.0e6;
-/// Front joint at 25 deg right, straight, 25 deg left, mV (facts 4.6).
-const JOINT_FRONT_MV: [f64; 3] = [1727.0, 3296.0, 4509.0];
-/// Rear joint, likewise.
-const JOINT_REAR_MV: [f64; 3] = [867.0, 2244.0, 3464.0];
-/// Where the joint sensors saturate, deg (facts 4.6).
-const JOINT_MAX_DEG: f64 = 25.0;
 /// Pulses of a wheel motor's speed sensor in one revolution (facts 4.8).
 const PULSES_PER_REVOLUTION: f64 = 67.0;
 /// Motor revolutions in one of the wheel (facts 4.8).
 const GEAR: f64 = 48.3;
 
-/// Voltage of a cylinder's position sensor at `stroke_m`, mV.
+/// Voltage of a cylinder's position sensor at `stroke_m`, mV; the nominal machine's, as are all here.
+/// [`Calibration`] has any machine's.
 #[must_use]
 pub fn stroke_mv(stroke_m: f64) -> f64 {
-    linear_mv(stroke_m, STROKE_SPAN_M)
+    Calibration::default().stroke_mv(stroke_m)
 }
 
 /// Stroke at `mv`, m, at least 0. The firmware would wrap a negative one to 65 m; ours stops at 0.
 #[must_use]
 pub fn stroke_m(mv: f64) -> f64 {
-    linear(mv, STROKE_SPAN_M)
+    Calibration::default().stroke_m(mv)
 }
 
 /// Voltage of a chamber's pressure sensor at `pa`, mV.
@@ -64,25 +59,25 @@ pub fn pump_pa(mv: f64) -> f64 {
 /// Voltage of the front joint's sensor at `rad`, left > 0, mV.
 #[must_use]
 pub fn joint_front_mv(rad: f64) -> f64 {
-    joint_mv(rad, JOINT_FRONT_MV)
+    Calibration::default().joint_front_mv(rad)
 }
 
 /// Front joint at `mv`, rad, left > 0, clamped to 25 deg.
 #[must_use]
 pub fn joint_front_rad(mv: f64) -> f64 {
-    joint_rad(mv, JOINT_FRONT_MV)
+    Calibration::default().joint_front_rad(mv)
 }
 
 /// Voltage of the rear joint's sensor at `rad`, left > 0, mV.
 #[must_use]
 pub fn joint_rear_mv(rad: f64) -> f64 {
-    joint_mv(rad, JOINT_REAR_MV)
+    Calibration::default().joint_rear_mv(rad)
 }
 
 /// Rear joint at `mv`, rad, left > 0, clamped to 25 deg.
 #[must_use]
 pub fn joint_rear_rad(mv: f64) -> f64 {
-    joint_rad(mv, JOINT_REAR_MV)
+    Calibration::default().joint_rear_rad(mv)
 }
 
 /// Frequency of a wheel motor's sensor while the wheel turns at `rad_s`, Hz. Without direction.
@@ -99,24 +94,24 @@ pub fn wheel_rad_s(hz: f64, forward: bool) -> f64 {
     if forward { speed_rad_s } else { -speed_rad_s }
 }
 
-fn linear_mv(value: f64, span: f64) -> f64 {
+pub(super) fn linear_mv(value: f64, span: f64) -> f64 {
     output_mv(ZERO_MV + value / span * SPAN_MV)
 }
 
-fn linear(mv: f64, span: f64) -> f64 {
+pub(super) fn linear(mv: f64, span: f64) -> f64 {
     (input_mv(mv) - ZERO_MV).max(0.0) / SPAN_MV * span
 }
 
-fn joint_mv(rad: f64, [right, straight, left]: [f64; 3]) -> f64 {
-    let share = rad.to_degrees() / JOINT_MAX_DEG;
+pub(super) fn joint_mv(rad: f64, max_deg: f64, [right, straight, left]: [f64; 3]) -> f64 {
+    let share = rad.to_degrees() / max_deg;
     let slope = if share < 0.0 { straight - right } else { left - straight };
     output_mv(straight + share * slope)
 }
 
-fn joint_rad(mv: f64, [right, straight, left]: [f64; 3]) -> f64 {
+pub(super) fn joint_rad(mv: f64, max_deg: f64, [right, straight, left]: [f64; 3]) -> f64 {
     let above = input_mv(mv) - straight;
     let slope = if above < 0.0 { straight - right } else { left - straight };
-    ((above / slope).clamp(-1.0, 1.0) * JOINT_MAX_DEG).to_radians()
+    ((above / slope).clamp(-1.0, 1.0) * max_deg).to_radians()
 }
 
 /// What the converter can see: 0 to 5.5 V.

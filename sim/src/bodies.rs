@@ -96,9 +96,10 @@ impl HingeSpring {
 /// Dry friction of the ground against a wheel's rolling, without a jump at rest.
 ///
 /// The torque falls from `most_nm` through nothing to its opposite within some hundredths of a rad/s,
-/// on soft ground so steeply that it would turn a wheel alone around within a step. A solver that
-/// moves all parts at once may take it as it was at the step's start, since a wheel on the ground has
-/// the machine's inertia. One whose tyres reckon with the wheel alone must take it at the step's end.
+/// on soft ground so steeply that it would turn a wheel alone around within a step: one that slides, or
+/// whose tyre reckons with the wheel alone. So a solver takes it at the step's end:
+/// torque + most (tanh(rate / fade) at the start - tanh(rate / fade) at the end). Of a law without `most_nm`
+/// it takes the torque as it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RollingDrag {
     /// Torque in the motion at the step's start, Nm, forward > 0.

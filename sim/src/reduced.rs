@@ -23,7 +23,7 @@ use glam::{DMat3, DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
 use self::contact::{Body, Contact, Hold};
-use self::newton::{Balance, Convergence};
+use self::newton::{Balance, Convergence, Drag};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search, patch};
@@ -190,8 +190,17 @@ impl ReducedBodies {
             *lack = (*lack - from_ground) * dt_s;
         }
         let brake = loads.hold_nm.0.map(|hold_nm| hold_nm * dt_s);
-        let inertias = &inertias.spatial;
-        Balance { pose, inertias, lack, hinge, brake, dt_s, mass_kg: self.tree.mass_kg }
+        let drag = |i: usize| Drag::new(&loads.drag.0[i], s.rate[WHEELS + i], dt_s);
+        Balance {
+            pose,
+            inertias: &inertias.spatial,
+            lack,
+            hinge,
+            brake,
+            drag: core::array::from_fn(drag),
+            dt_s,
+            mass_kg: self.tree.mass_kg,
+        }
     }
 
     fn note_forces(&mut self, contacts: &[Contact], dt_s: f64) {

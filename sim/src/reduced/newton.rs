@@ -12,6 +12,7 @@ use super::factor::{Factors, Matrix};
 use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, Pose, WHEELS, gather};
 use super::spatial::{Spatial, Spatial6, ZERO6, add, add_at_point, dot, velocity_at, wrench_at};
 use super::tree::Tree;
+use crate::bodies::RollingDrag;
 
 /// Residual at which the balance holds, as a velocity of the whole machine, m/s. Convergence is
 /// quadratic, so the last iteration mostly ends orders below.
@@ -37,8 +38,43 @@ pub(super) struct Balance<'a> {
     pub(super) hinge: Generalized,
     /// Largest impulse of each wheel's brake, Nm s.
     pub(super) brake: [f64; 6],
+    /// Rolling resistance of each wheel; [`Self::lack`] has what it was at the step's start.
+    pub(super) drag: [Drag; 6],
     pub(super) dt_s: f64,
     pub(super) mass_kg: f64,
+}
+
+/// Rolling resistance over a step: its torque as of the step's start, and what becomes of it as the wheel
+/// turns slower or faster. Steeper than a sliding wheel's own inertia, it is taken at the step's end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Drag {
+    /// Impulse that it comes to as the wheel turns faster, Nm s.
+    most: f64,
+    fade_rad_s: f64,
+    /// Share of `most` in force at the step's start.
+    start: f64,
+}
+
+impl Drag {
+    /// That of `law` on a wheel that turns at `rate_rad_s` when the step begins.
+    pub(super) fn new(law: &RollingDrag, rate_rad_s: f64, dt_s: f64) -> Self {
+        if law.most_nm <= 0.0 {
+            return Self { most: 0.0, fade_rad_s: 1.0, start: 0.0 };
+        }
+        let start = (rate_rad_s / law.fade_rad_s).tanh();
+        Self { most: law.most_nm * dt_s, fade_rad_s: law.fade_rad_s, start }
+    }
+
+    /// Impulse beside that of the step's start on a wheel that turns at `rate_rad_s` at its end, Nm s.
+    fn impulse(&self, rate_rad_s: f64) -> f64 {
+        self.most * (self.start - (rate_rad_s / self.fade_rad_s).tanh())
+    }
+
+    /// Minus its derivative, kg m².
+    fn slope(&self, rate_rad_s: f64) -> f64 {
+        let share = (rate_rad_s / self.fade_rad_s).tanh();
+        self.most / self.fade_rad_s * (1.0 - share * share)
+    }
 }
 
 /// How the iteration ended.
@@ -252,13 +288,17 @@ impl Balance<'_> {
         }
     }
 
+    /// Impulse of brake and rolling resistance about the axle of wheel `i`, Nm s.
     fn brake_impulse(&self, i: usize, rate_rad_s: f64) -> f64 {
-        -(BRAKE_CREEP_NMS * self.dt_s * rate_rad_s).clamp(-self.brake[i], self.brake[i])
+        let brake = (BRAKE_CREEP_NMS * self.dt_s * rate_rad_s).clamp(-self.brake[i], self.brake[i]);
+        self.drag[i].impulse(rate_rad_s) - brake
     }
 
     fn brake_slope(&self, i: usize, rate: &Generalized) -> f64 {
+        let rate_rad_s = rate[WHEELS + i];
         let slope = BRAKE_CREEP_NMS * self.dt_s;
-        if slope * rate[WHEELS + i].abs() < self.brake[i] { slope } else { 0.0 }
+        let brake = if slope * rate_rad_s.abs() < self.brake[i] { slope } else { 0.0 };
+        brake + self.drag[i].slope(rate_rad_s)
     }
 
     fn size_m_s(&self, residual: &Generalized) -> f64 {

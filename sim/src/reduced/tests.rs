@@ -10,8 +10,8 @@ use super::newton::Convergence;
 use super::pose::{FREEDOMS, Generalized, Inertias, Pose, ROLL, State, WHEELS};
 use super::spatial::{Spatial, add_at_point, angular, apply, dot, linear, velocity_at, wrench_at};
 use super::tree::Tree;
-use crate::bodies::{Bodies, HingeSpring, Loads};
-use crate::{Effects, Parts, RollHinge, Terrain};
+use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
+use crate::{Effects, Parts, RollHinge, Terrain, TyrePart};
 
 fn parts() -> Parts {
     Parts::new(&Machine::xt28(), &Effects::default())
@@ -239,4 +239,50 @@ fn a_sprung_roll_hinge_lets_a_side_follow_the_ground_and_stops_where_it_must() {
     assert!((0.06..0.09).contains(&limp), "{limp}");
     assert!(stiff < 0.005 && none == 0.0, "{stiff} {none}");
     assert!((0.02..0.04).contains(&stopped), "{stopped}");
+}
+
+/// On ice a wheel has only its own inertia against the rolling resistance. Where that is steep, as in
+/// slush, it stops the wheel and does not turn it around: it takes energy and gives none.
+#[test]
+fn rolling_resistance_on_ice_stops_a_sliding_wheel_and_does_not_turn_it_around() {
+    let mut parts = parts();
+    parts.tyres = parts.tyres.map(|tyre| TyrePart { friction: 0.05, ..tyre });
+    for (rate_hz, share) in [(200.0, 0.02), (200.0, 0.3), (60.0, 0.05), (60.0, 0.3)] {
+        let mut bodies = ReducedBodies::new(&parts, &Terrain::Flat, PerWheel::splat(0.2));
+        let hold = |angle_rad: f64| HingeSpring {
+            stiffness_nm: 5.0e5,
+            damping_nms: 5.0e4,
+            rest_rad: angle_rad,
+        };
+        let still = bodies.motion();
+        let mut step = |bodies: &mut ReducedBodies, spins: bool| {
+            let motion = bodies.motion();
+            let drag = PerWheel::from_fn(|w| {
+                let most_nm = if spins { share * motion.ground_force_n[w] * 0.74 } else { 0.0 };
+                RollingDrag::tanh(most_nm, 0.05, motion.wheel_rate_rad_s[w])
+            });
+            let arm = still.arm.map(|arm| hold(arm.angle_rad));
+            let joint = [hold(0.0); 2];
+            bodies.advance(&Loads { arm, joint, drag, ..Loads::default() }, 1.0 / rate_hz);
+            bodies.state.rate[WHEELS..WHEELS + 6].to_vec()
+        };
+        // Set down first: a falling machine has energy of its own.
+        (0..600).for_each(|_| drop(step(&mut bodies, false)));
+        bodies.state.rate[WHEELS..WHEELS + 6].fill(3.0);
+        let mut before = vec![3.0_f64; 6];
+        for i in 0..300 {
+            let after = step(&mut bodies, true);
+            for (wheel, (&after, &before)) in after.iter().zip(&before).enumerate() {
+                // What moves on takes its wheels along.
+                let rolls_rad_s = bodies.motion().velocity_m_s[0] / 0.74;
+                let bounds = -0.01..before.max(rolls_rad_s + 0.05);
+                assert!(
+                    bounds.contains(&after),
+                    "{rate_hz} Hz, {share}, step {i}, wheel {wheel}: {before} to {after} rad/s"
+                );
+            }
+            assert!(bodies.convergence.residual_m_s < 1e-9, "{:?}", bodies.convergence);
+            before = after;
+        }
+    }
 }

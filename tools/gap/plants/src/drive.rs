@@ -160,9 +160,10 @@ impl Drive {
             let normal_n = motion.ground_force_n[wheel].max(0.0);
             let dry = rolling[wheel] * normal_n * machine.wheels.radius_m
                 + truth.binding_nm[wheel] * bite;
+            // A law of its own, and steps short enough for it as it is: a solver is not to put in its own.
             torques.drag[wheel] = RollingDrag {
                 torque_nm: -dry * speed / speed.hypot(FADE_RAD_S),
-                most_nm: dry,
+                most_nm: 0.0,
                 fade_rad_s: FADE_RAD_S,
             };
         }

@@ -11,7 +11,7 @@ use super::pose::{FREEDOMS, Generalized, Inertias, Pose, ROLL, State, WHEELS};
 use super::spatial::{Spatial, add_at_point, angular, apply, dot, linear, velocity_at, wrench_at};
 use super::tree::Tree;
 use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
-use crate::{Effects, Parts, RollHinge, Terrain, TyrePart};
+use crate::{Effects, HullBall, Parts, RollHinge, Terrain, TyrePart};
 
 fn parts() -> Parts {
     Parts::new(&Machine::xt28(), &Effects::default())
@@ -285,4 +285,28 @@ fn rolling_resistance_on_ice_stops_a_sliding_wheel_and_does_not_turn_it_around()
             before = after;
         }
     }
+}
+
+/// How long the hull is not looked at follows from how far it reaches: a long nose that swings down meets
+/// the ground in the step in which it gets there.
+#[test]
+fn a_long_hull_that_swings_down_is_seen_in_time() {
+    let mut parts = parts();
+    parts.hulls[0].push(HullBall { centre_m: [15.0, 0.0, 1.0], radius_m: 0.1 });
+    let mut bodies = ReducedBodies::new(&parts, &Terrain::Flat, PerWheel::splat(0.2));
+    bodies.state.turn = DQuat::from_rotation_y(-0.05) * bodies.state.turn;
+    bodies.state.position.z = 1.2;
+    bodies.state.rate[1] = 1.0;
+    let mut careful = bodies.clone();
+    let mut hit = false;
+    for step in 0..120 {
+        careful.search.look_again();
+        for one in [&mut bodies, &mut careful] {
+            one.advance(&Loads::default(), 0.005);
+        }
+        let [seen_n, wanted_n] = [&bodies, &careful].map(|one| one.motion().chassis_force_n);
+        assert_eq!(seen_n, wanted_n, "step {step}");
+        hit |= wanted_n > 0.0;
+    }
+    assert!(hit, "it never came down");
 }

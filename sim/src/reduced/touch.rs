@@ -17,8 +17,6 @@ pub(super) const CONTACTS_MAX: usize = 64;
 const HULL: ContactLaw = ContactLaw { stiffness_n_m: 4.0e6, damping_n_s_m: 6.0e4, friction: 0.5 };
 /// How far from the ground a part of the hull is told to be at most, m.
 const CLEARANCE_MAX_M: f64 = 0.4;
-/// Radius about a frame's centre of mass that holds its hull, m.
-const HULL_REACH_M: f64 = 4.0;
 
 /// Search for contacts: what it needs of the vehicle, and how far the hull is from needing it.
 #[derive(Clone, Debug)]
@@ -70,7 +68,7 @@ impl Search {
         }
         for (i, hull) in tree.hulls.iter().enumerate() {
             let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
-                + angular(&frames[i]).length() * HULL_REACH_M;
+                + angular(&frames[i]).length() * tree.hull_reach_m[i];
             self.clear_m[i] -= speed_m_s * dt_s;
             if self.clear_m[i] < ahead_m(&HULL, speed_m_s, dt_s) {
                 self.clear_m[i] =

@@ -21,6 +21,8 @@ pub(super) struct Tree {
     pub(super) radius_m: f64,
     /// Balls of each frame's outside.
     pub(super) hulls: [Vec<HullBall>; 3],
+    /// Distance of the furthest of them from their frame's centre of mass, m.
+    pub(super) hull_reach_m: [f64; 3],
     pub(super) gravity: DVec3,
     pub(super) mass_kg: f64,
 }
@@ -76,6 +78,11 @@ impl Tree {
             }),
             radius_m: parts.radius_m,
             hulls: parts.hulls.clone(),
+            hull_reach_m: core::array::from_fn(|i| {
+                let com = DVec3::from(parts.frames[i].com_m);
+                let from_com_m = |ball: &HullBall| DVec3::from(ball.centre_m).distance(com);
+                parts.hulls[i].iter().map(from_com_m).fold(0.0, f64::max)
+            }),
             gravity: parts.gravity_m_s2.into(),
             mass_kg: on_frames + on_arms,
         }

@@ -102,6 +102,8 @@ pub struct Emulator {
     receiver: Receiver,
     gnss_bytes: Vec<u8>,
     plant: Box<dyn Track + Send>,
+    /// Greatest force of the ground on the frames over the last tick, N.
+    chassis_force_n: f64,
 }
 
 impl Emulator {
@@ -150,6 +152,7 @@ impl Emulator {
             receiver: Receiver::new(config.origin),
             gnss_bytes: Vec::with_capacity(512),
             plant,
+            chassis_force_n: 0.0,
         }
     }
 
@@ -166,9 +169,7 @@ impl Emulator {
     /// Frames for the bus are added to `out`.
     pub fn tick(&mut self, now: SimTime, out: &mut Outbox) {
         let actuation = self.control(now, out);
-        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
-            self.plant.step(&actuation);
-        }
+        self.go_on(|plant| plant.step(&actuation));
     }
 
     /// One tick at `now` along a measurement: the plant is where `measured` has it, the ECUs read it
@@ -176,9 +177,7 @@ impl Emulator {
     /// sets out from there.
     pub fn track(&mut self, now: SimTime, measured: &VehicleState, out: &mut Outbox) {
         let actuation = self.control(now, out);
-        for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
-            self.plant.track(measured, &actuation);
-        }
+        self.go_on(|plant| plant.track(measured, &actuation));
     }
 
     /// Puts the plant where `measured` has it, between two ticks.
@@ -186,6 +185,7 @@ impl Emulator {
         let Outputs { arm, drive } = &self.out;
         let actuation = wiring::actuation(arm, drive, self.engine.speed_rpm());
         self.plant.place(measured, &actuation);
+        self.chassis_force_n = 0.0;
     }
 
     /// One tick at `now` in which the blocks of `held` put out what `measured` says.
@@ -197,9 +197,18 @@ impl Emulator {
         out: &mut Outbox,
     ) {
         let actuation = self.control(now, out);
+        self.go_on(|plant| {
+            plant.hold(measured, &actuation, held);
+            plant.step(&actuation);
+        });
+    }
+
+    /// The plant's part of a tick, step by step.
+    fn go_on(&mut self, mut step: impl FnMut(&mut (dyn Track + Send))) {
+        self.chassis_force_n = 0.0;
         for _ in 0..TICK.as_nanos() / STEP.as_nanos() {
-            self.plant.hold(measured, &actuation, held);
-            self.plant.step(&actuation);
+            step(&mut *self.plant);
+            self.chassis_force_n = self.chassis_force_n.max(self.plant.state().chassis_force_n);
         }
     }
 
@@ -288,10 +297,13 @@ impl Emulator {
         bytes.append(&mut self.gnss_bytes);
     }
 
-    /// What is true of the machine now.
+    /// What is true of the machine now. The force on its frames is the greatest since the last tick: a knock
+    /// between two ticks has happened too.
     #[must_use]
-    pub fn truth(&self) -> &VehicleState {
-        self.plant.state()
+    pub fn truth(&self) -> VehicleState {
+        let state = *self.plant.state();
+        let chassis_force_n = state.chassis_force_n.max(self.chassis_force_n);
+        VehicleState { chassis_force_n, ..state }
     }
 }
 
@@ -318,6 +330,10 @@ impl Clone for Emulator {
             receiver: self.receiver.clone(),
             gnss_bytes: self.gnss_bytes.clone(),
             plant: self.plant.snapshot(),
+            chassis_force_n: self.chassis_force_n,
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         schedule.begin(now, at);
         out.clear();
         if let Some((file, path)) = &mut truth {
-            write_truth_row(file, schedule.on_the_wall(now), emulator.truth())
+            write_truth_row(file, schedule.on_the_wall(now), &emulator.truth())
                 .map_err(|error| format!("{}: {error}", path.display()))?;
         }
         wires.listen(now, &mut emulator)?;

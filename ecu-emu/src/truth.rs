@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use xt28_machine::{SimTime, Wheel};
 use xt28_sim::VehicleState;
 
-/// Column names, units in the name.
+/// Column names, units in the name. `chassis_n` is the greatest force on the frames since the row before, the
+/// others are what is at its time.
 pub const TRUTH_HEADER: &str = "time_s,x_m,y_m,z_m,yaw_rad,roll_rad,pitch_rad,\
 ground_fr_n,ground_fl_n,ground_mr_n,ground_ml_n,ground_br_n,ground_bl_n,chassis_n";
 

@@ -55,7 +55,7 @@ fn run(effects: Effects) -> (Vec<(SimTime, Frame)>, VehicleState) {
         out.clear();
         now += TICK;
     }
-    (log, *emulator.truth())
+    (log, emulator.truth())
 }
 
 fn with(effect: &str) -> Vec<(SimTime, Frame)> {

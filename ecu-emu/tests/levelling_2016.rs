@@ -25,7 +25,7 @@ fn levelled(preset: u8) -> VehicleState {
         out.clear();
         emulator.tick(SimTime::ZERO + TICK * tick, &mut out);
     }
-    *emulator.truth()
+    emulator.truth()
 }
 
 #[test]

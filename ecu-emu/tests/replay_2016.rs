@@ -94,7 +94,7 @@ fn run(ticks: u32, quirks: Quirks) -> (String, String) {
     let (mut text, mut inputs, mut out) = (String::new(), Inputs::new(), Outbox::default());
     for tick in 0..ticks {
         let now = SimTime::ZERO + TICK * tick;
-        inputs.push(emulator.truth(), &operator, now);
+        inputs.push(&emulator.truth(), &operator, now);
         out.clear();
         emulator.tick(now, &mut out);
         log(&mut text, now, "can1", out.frames());

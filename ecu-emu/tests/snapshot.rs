@@ -55,12 +55,12 @@ fn a_clone_goes_on_bit_for_bit() {
 fn one_led_along_another_goes_on_with_it() {
     let mut real = Emulator::new(&config());
     let mut led = Emulator::set_down(&config());
-    led.place(real.truth());
+    led.place(&real.truth());
     let mut outbox = Outbox::with_capacity(64);
     for at in 0..110 {
         tick(&mut real, at);
         led.on_frame(now(at), &told(at));
-        led.track(now(at), real.truth(), &mut outbox);
+        led.track(now(at), &real.truth(), &mut outbox);
         outbox.clear();
     }
     for at in 110..300 {

@@ -202,7 +202,7 @@ impl<W: Write> Lockstep<W> {
         }
         self.gnss.clear();
         emulator.take_gnss(&mut self.gnss);
-        self.truth.push((now + TICK).as_secs_f64(), emulator.truth());
+        self.truth.push((now + TICK).as_secs_f64(), &emulator.truth());
     }
 
     fn tick_gateway(&mut self, now: SimTime) {

@@ -12,7 +12,7 @@ use crate::Series;
 pub struct Truth {
     /// Vertical force of the ground on each wheel, N.
     pub ground_force_n: Series<PerWheel<f64>>,
-    /// Force of the ground on anything but the wheels, N. Empty where a file has no such column: older
+    /// Force of the ground on anything but the wheels, the greatest since the sample before, N. Empty where a file has no such column: older
     /// emulators did not write it.
     pub chassis_force_n: Series<f64>,
 }

@@ -255,7 +255,7 @@ fn rolling_resistance_on_ice_stops_a_sliding_wheel_and_does_not_turn_it_around()
             rest_rad: angle_rad,
         };
         let still = bodies.motion();
-        let mut step = |bodies: &mut ReducedBodies, spins: bool| {
+        let step = |bodies: &mut ReducedBodies, spins: bool| {
             let motion = bodies.motion();
             let drag = PerWheel::from_fn(|w| {
                 let most_nm = if spins { share * motion.ground_force_n[w] * 0.74 } else { 0.0 };

@@ -88,7 +88,7 @@ pub(crate) fn text(manoeuvre: &str, effects: &Effects) -> String {
             log(0.0, &frame);
             emulator.on_frame(now, &frame);
         }
-        let truth = *emulator.truth();
+        let truth = emulator.truth();
         emulator.tick(now, &mut outbox);
         outbox.frames().iter().for_each(|frame| log(0.002, frame));
         outbox.clear();

@@ -98,8 +98,8 @@ fn a_signal_that_was_not_recorded_is_named_with_its_message() {
 
 #[test]
 fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
-    let id = format!(" {}#", id("PosFront"));
-    let heard = |from_s: f64, to_s: f64| {
+    let heard_of = |message: &str, from_s: f64, to_s: f64| {
+        let id = format!(" {}#", id(message));
         let (_folder, log) = changed(|at_s, rest| {
             let is_there = (from_s..to_s).contains(&at_s) || !rest.contains(&id);
             is_there.then(|| (at_s, rest.to_owned()))
@@ -107,6 +107,7 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
         let output = xt28(&["gap", "where", &log, "--dbc", DBC]);
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
+    let heard = |from_s, to_s| heard_of("PosFront", from_s, to_s);
     let (status, talk) = heard(0.0, 8.0);
     assert_ne!(status, Some(2), "{talk}");
     assert!(talk.contains("stroke.FR stops at 8.0 s of a log of 10.0 s"), "{talk}");
@@ -116,6 +117,9 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     let (status, talk) = heard(3.0, 7.0);
     assert_eq!(status, Some(2), "{talk}");
     assert!(talk.contains("4.0 s long, and a diagnosis needs 5 s"), "{talk}");
+    // Pressures are read where they are logged, though a diagnosis does without.
+    let (_, talk) = heard_of("PressMid", 0.0, 8.0);
+    assert!(talk.contains("bore_pressure.MR stops at 8.0 s"), "{talk}");
 }
 
 #[test]

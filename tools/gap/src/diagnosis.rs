@@ -58,8 +58,8 @@ pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use noise::with_noise_of;
 pub use scales::{Chances, Grounds, Scales};
 pub use search::search;
-pub(crate) use signals::needed;
 pub use signals::{DT_S, Samples, Signals};
+pub(crate) use signals::{needed, sampled};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
     Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,

@@ -224,21 +224,28 @@ impl Signals {
 
 /// The channels without which the blocks cannot be driven; a receiver may be missing.
 pub(crate) fn needed() -> impl Iterator<Item = Channel> {
+    sampled().filter(|channel| !is_extra(*channel))
+}
+
+/// The channels that are held from one sample to the next, where they are logged: what is needed, and more.
+pub(crate) fn sampled() -> impl Iterator<Item = Channel> {
     let receiver = [Channel::East, Channel::North, Channel::Heading];
     let unused = |channel: &Channel| {
         matches!(
             channel,
             Channel::WheelLoad(_)
-                | Channel::BorePressure(_)
-                | Channel::RodPressure(_)
                 | Channel::PumpCurrent(_)
                 | Channel::TargetOpening(_)
                 | Channel::TargetEngineSpeed
-                | Channel::Brake
                 | Channel::Enable
         )
     };
     Channel::all().into_iter().filter(move |c| !receiver.contains(c) && !unused(c))
+}
+
+/// Whether blocks are judged by it where it is logged, and do without it where it is not.
+const fn is_extra(channel: Channel) -> bool {
+    matches!(channel, Channel::BorePressure(_) | Channel::RodPressure(_) | Channel::Brake)
 }
 
 /// What the load of a cylinder is read from: its pressures where they are logged.

@@ -1,18 +1,18 @@
-//! The part of a log in which everything that a diagnosis needs is there: a message that begins late or stops
+//! The part of a log in which everything that a diagnosis reads is there: a message that begins late or stops
 //! early was not measured before or after, and its first or last value says nothing of that.
 
 use crate::FieldLog;
-use crate::diagnosis::needed;
+use crate::diagnosis::sampled;
 
 /// How long a value may be held before its first sample or after its last, s: the slowest message that is
-/// needed comes ten times a second.
+/// read comes ten times a second.
 const HELD_MAX_S: f64 = 1.0;
 
-/// `log` from where all that is needed has begun to where some of it stops, and one sentence on what was
+/// `log` from where all that is read has begun to where some of it stops, and one sentence on what was
 /// left out; the log itself where that is nothing. What is never there is for others to say.
 pub(super) fn attended(log: FieldLog) -> (FieldLog, Option<String>) {
     let end_s = log.duration_s();
-    let spans = needed().filter_map(|channel| {
+    let spans = sampled().filter_map(|channel| {
         let series = log.series(channel)?;
         let (first_s, _) = series.iter().next()?;
         Some((channel, [first_s, series.end_s()?]))

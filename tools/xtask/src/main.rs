@@ -10,10 +10,12 @@ mod second_engine;
 mod side_by_side;
 mod tally;
 mod test;
+mod third_make;
 mod tidy;
 mod vcan;
 mod vcan_scenarios;
 mod workspace;
+mod yardstick;
 
 use std::process::ExitCode;
 
@@ -40,6 +42,7 @@ enum Chore {
     GuestKernel(vcan::Cache),
     Bench(bench::Bench),
     SecondEngine(second_engine::SecondEngine),
+    ThirdMake(third_make::ThirdMake),
 }
 
 fn main() -> ExitCode {
@@ -74,5 +77,6 @@ fn perform(chore: Chore) -> Outcome<u8> {
         }
         Chore::Bench(bench) => bench.execute(&workspace),
         Chore::SecondEngine(second) => second.execute(&workspace),
+        Chore::ThirdMake(third) => third.execute(&workspace),
     }
 }

@@ -9,9 +9,7 @@ use serde_json::Value;
 use super::engine::Engine;
 use super::trajectory::Trajectory;
 use crate::workspace::{Outcome, Workspace};
-
-/// Where MuJoCo's side and everything both sides read are, below the root.
-const YARDSTICK: &str = "tools/yardstick";
+use crate::yardstick::{YARDSTICK, python, with};
 
 /// Both sides, ready to run.
 pub(crate) struct Programs {
@@ -154,9 +152,7 @@ impl Programs {
 
     /// A module of MuJoCo's side on a ground.
     fn mujoco(&self, module: &str, terrain: &str) -> Outcome<Command> {
-        let mut command = Command::new(&self.python);
-        command.current_dir(&self.root).env("PYTHONPATH", self.root.join(YARDSTICK));
-        command.env("PYTHONDONTWRITEBYTECODE", "1").args(["-m", module]);
+        let mut command = with(&self.root, &self.python, module);
         command.arg("--machine").arg(&self.machine);
         command.arg("--manoeuvres").arg(self.manoeuvres());
         // Level ground is a plane to both.
@@ -174,55 +170,6 @@ impl Programs {
         }
         Ok(path)
     }
-}
-
-/// A Python that has the packages at the pinned versions; installs them below the build folder if
-/// the machine's own has not.
-fn python(workspace: &Workspace) -> Outcome<PathBuf> {
-    let pins = workspace.root.join(YARDSTICK).join("requirements.txt");
-    let own = PathBuf::from("python3");
-    if has_packages(&own, &pins)? {
-        return Ok(own);
-    }
-    let venv = workspace.target.join("yardsticks");
-    let python = venv.join("bin").join("python3");
-    if has_packages(&python, &pins)? {
-        return Ok(python);
-    }
-    eprintln!(
-        "second-engine: installing the packages of {} below {}",
-        pins.display(),
-        venv.display()
-    );
-    let remedy = "install python3 (3.11 or later) with venv, and let it reach PyPI";
-    let mut steps = Vec::new();
-    if !python.exists() {
-        let mut create = Command::new("python3");
-        create.args(["-m", "venv"]).arg(&venv);
-        steps.push(create);
-    }
-    let mut install = Command::new(&python);
-    install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"]);
-    install.arg(&pins);
-    steps.push(install);
-    for step in &mut steps {
-        if !step.status().is_ok_and(|status| status.success()) {
-            return Err(format!("{step:?} failed; {remedy}").into());
-        }
-    }
-    Ok(python)
-}
-
-/// Whether this Python has every pinned package in its pinned version.
-fn has_packages(python: &Path, pins: &Path) -> Outcome<bool> {
-    let pins = fs::read_to_string(pins).map_err(|error| format!("{}: {error}", pins.display()))?;
-    let mut check = String::from("from importlib.metadata import version as v\n");
-    for pin in pins.lines().filter(|line| !line.starts_with('#')) {
-        let (name, version) = pin.split_once("==").ok_or_else(|| format!("not a pin: {pin}"))?;
-        check.push_str(&format!("assert v({name:?}) == {version:?}\n"));
-    }
-    let output = Command::new(python).args(["-c", &check]).output();
-    Ok(output.is_ok_and(|output| output.status.success()))
 }
 
 fn text_of(command: &mut Command) -> Outcome<String> {

@@ -1,0 +1,36 @@
+//! `cargo xtask third-make`: field logs of machines whose bodies are MuJoCo's, for `xt28 gap check --set`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::workspace::{Outcome, Workspace};
+use crate::yardstick;
+
+/// Write cases of a third make: MuJoCo's bodies, hydraulics, ECUs and sensors in Python, with answers
+///
+/// `xt28 gap check --set OUT` then examines the diagnosis on them. Needs python3 (3.11 or later) with venv;
+/// packages come from PyPI into the build folder unless python3 has them. A case takes about a minute.
+#[derive(Args)]
+pub(crate) struct ThirdMake {
+    /// Folder for cases and their answers
+    out: PathBuf,
+    /// What is wrong, a case each: NAME[:SCOPE], two joined by +, or `sound`; one of each fault if none
+    causes: Vec<String>,
+    /// Seed of the first case; the next has one more
+    #[arg(long, default_value_t = 1, value_name = "SEED")]
+    seed: u32,
+}
+
+impl ThirdMake {
+    /// Writes them.
+    ///
+    /// # Errors
+    /// When Python cannot be run.
+    pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
+        let mut command = yardstick::module(workspace, "third_make")?;
+        command.arg(std::path::absolute(&self.out)?).args(&self.causes);
+        let status = command.arg(format!("--seed={}", self.seed)).status()?;
+        Ok(u8::from(!status.success()))
+    }
+}

@@ -1,0 +1,106 @@
+"""`python3 -m third_make OUT CAUSE...`: cases for `xt28 gap check --set OUT`, with answers."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from xt28_mujoco.machine import Machine
+
+from .faults import NAMES, draw
+from .run import Run
+from .scripts import RAMP, drives
+from .truth import Truth, tolerances
+from .wire import logged_database
+
+BEGIN_S = 1.76e9
+BETWEEN_S = 900.0
+
+
+def about(name: str, scripts) -> str:
+    """What one may know of a case."""
+    lines = [f'case = "{name}"', 'machine = "Xt28, bunk declared empty"', 'dbc = "xt28-field.dbc"']
+    for number, script in enumerate(scripts, 1):
+        lines += [
+            "\n[[run]]",
+            f'file = "run-{number}-{script.name}.log.gz"',
+            f'scenario = "{script.name}"',
+            f"seconds = {script.seconds}",
+            f'terrain = "{"ramp" if script.ramp else "flat"}"',
+            f"fit = {str(script.fit).lower()}",
+        ]
+        if script.ramp:
+            profile = ", ".join(f"{key} = {value}" for key, value in RAMP.items())
+            lines.append(f"ramp = {{ {profile} }}")
+    return "\n".join(lines) + "\n"
+
+
+def answer(name: str, seed: int, kind: str, faults) -> str:
+    """What is wrong."""
+    lines = [f'case = "{name}"', f"seed = {seed}", f'kind = "{kind}"']
+    for fault in faults:
+        numbers = ", ".join(f"{key} = {value!r}" for key, value in fault.sizes.items())
+        lines += [
+            "\n[[truth]]",
+            f'effect = "{fault.name}"',
+            f'group = "{fault.group}"',
+            f'scope = "{fault.scope}"',
+            f'target_signal = "{fault.signal}"',
+            f"parameters = {{ {numbers} }}",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def write(args, seed: int, causes: list[str]) -> str:
+    """One case; its name."""
+    random = np.random.default_rng(seed)
+    truth, machine = Truth(), Machine(args.machine)
+    tolerances(truth, random)
+    faults = [draw(cause, random) for cause in causes]
+    for fault in faults:
+        fault.put_in(truth)
+    kind = ("null", "single", "pair")[len(faults)]
+    if not all(fault.known for fault in faults):
+        kind = "unknown"
+    name = f"third-{seed}"
+    folder = args.out / name
+    folder.mkdir(parents=True, exist_ok=True)
+    (args.out / "answers").mkdir(exist_ok=True)
+    scripts = drives(random)
+    for number, script in enumerate(scripts, 1):
+        noise = np.random.default_rng((seed, number))
+        log = Run(machine, args.dbc, truth, script, noise).log(BEGIN_S + BETWEEN_S * number)
+        (folder / f"run-{number}-{script.name}.log.gz").write_bytes(log)
+    (folder / "about.toml").write_text(about(name, scripts), encoding="utf-8")
+    (folder / "xt28-field.dbc").write_text(logged_database(args.dbc), encoding="utf-8")
+    (args.out / "answers" / f"{name}.toml").write_text(answer(name, seed, kind, faults))
+    return name
+
+
+def main() -> None:
+    """Writes the cases that are asked for, or one of each fault."""
+    parser = argparse.ArgumentParser(prog="python3 -m third_make", description=__doc__)
+    parser.add_argument("out", type=Path, help="folder for cases and answers")
+    parser.add_argument("--machine", type=Path, default=Path("machine/xt28.toml"))
+    parser.add_argument("--dbc", type=Path, default=Path("dbc/xt28.dbc"))
+    parser.add_argument(
+        "--seed", type=int, default=1, help="of the first case; the next has one more"
+    )
+    parser.add_argument(
+        "causes",
+        nargs="*",
+        help="a case each: NAME[:SCOPE], two joined by +, or `sound`; one of each fault if none",
+    )
+    args = parser.parse_intermixed_args()
+    causes = args.causes or ["sound"] + list(NAMES)
+    for k, cause in enumerate(causes):
+        parts = [] if cause == "sound" else cause.split("+")
+        if len(parts) > 2:
+            parser.error(f"{cause}: two faults at most")
+        try:
+            print(write(args, args.seed + k, parts), cause, flush=True)
+        except ValueError as error:
+            parser.error(str(error))
+
+
+main()

@@ -1,0 +1,77 @@
+"""Everything that can be wrong with a machine of this make: `faults.toml`, drawn and put in."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from xt28_mujoco.machine import WHEELS
+
+from .truth import Truth
+
+SCOPES = {
+    "all": WHEELS,
+    "front": ("FR", "FL"),
+    "middle": ("MR", "ML"),
+    "rear": ("BR", "BL"),
+    "left": ("FL", "ML", "BL"),
+    "right": ("FR", "MR", "BR"),
+} | {wheel: (wheel,) for wheel in WHEELS}
+
+TABLE = tomllib.loads(Path(__file__).with_name("faults.toml").read_text(encoding="utf-8"))
+NAMES = tuple(TABLE)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing that is wrong: on which wheels, and by how much."""
+
+    name: str
+    scope: str
+    sizes: dict[str, float]
+
+    @property
+    def known(self) -> bool:
+        """Whether a catalogue of the bench has it."""
+        return TABLE[self.name].get("known", True)
+
+    @property
+    def group(self) -> str:
+        """Block of the machine."""
+        return TABLE[self.name]["group"]
+
+    @property
+    def signal(self) -> str:
+        """The signal that it shows in first."""
+        return TABLE[self.name]["signal"]
+
+    def put_in(self, truth: Truth) -> None:
+        """Makes it so."""
+        wheels = [WHEELS.index(wheel) for wheel in SCOPES[self.scope]]
+        for name, value in self.sizes.items():
+            for place in TABLE[self.name]["size"][name]["at"]:
+                part, field = place.lstrip("*").split(".")
+                there = getattr(truth, part)
+                number = getattr(there, field)
+                whole = not isinstance(number, np.ndarray)
+                new = value * (number if whole else number[wheels]) if place[0] == "*" else value
+                if whole:
+                    setattr(there, field, float(new))
+                else:
+                    number[wheels] = new
+
+
+def draw(cause: str, random: np.random.Generator) -> Fault:
+    """A fault by its name, or NAME:SCOPE; scope and sizes drawn."""
+    name, _, scope = cause.partition(":")
+    if name not in TABLE:
+        raise ValueError(f"no fault is called {name!r}; there are {', '.join(NAMES)}")
+    scope = scope or str(random.choice(TABLE[name].get("scopes", ["all"])))
+    if scope not in SCOPES:
+        raise ValueError(f"no wheels are called {scope!r}; there are {', '.join(SCOPES)}")
+    sizes = {}
+    for size, how in TABLE[name]["size"].items():
+        sign = random.choice((-1.0, 1.0)) if how.get("either_sign") else 1.0
+        sizes[size] = float(sign * random.uniform(*how["span"]))
+    return Fault(name, scope, sizes)

@@ -5,6 +5,7 @@ mod arms;
 mod axles;
 mod bus;
 mod controllers;
+mod current_step;
 mod driving;
 mod grade;
 mod joints;

@@ -3,6 +3,7 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
+use super::current_step::{STEER_STEP, within_step};
 use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -14,7 +15,7 @@ const HALVINGS: usize = 9;
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint less the one asked for.
 ///
 /// Which of two neighbouring samples the ECU saw is not known: where what it would ask jumps between
-/// them, anything in between is right. `NaN` where the machine is about to start or to stop.
+/// them, anything in between is right, as is what shows as the same current, cut off or rounded. `NaN` where the machine is about to start or to stop.
 #[must_use]
 pub(super) fn steer_opening_error(
     signals: &Signals,
@@ -32,7 +33,8 @@ pub(super) fn steer_opening_error(
                 let near = &asked[i.saturating_sub(1)..=(i + 1).min(end)];
                 let least = near.iter().copied().fold(f64::INFINITY, f64::min);
                 let most = near.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                error = logged[i].clamp(least, most) - logged[i];
+                let asked = logged[i].clamp(least, most);
+                error = asked - within_step(asked, logged[i], STEER_STEP);
             }
             let speed_m_s = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
             let starts =

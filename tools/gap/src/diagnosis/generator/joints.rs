@@ -9,6 +9,7 @@ use xt28_machine::Machine;
 use xt28_sim::{Effects, Steering};
 
 use super::controllers::steer_opening_asked;
+use super::current_step::{STEER_STEP, within_step};
 use super::scrub::scrub_nm;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
@@ -29,10 +30,6 @@ const SLOW_S: f64 = 1.0;
 const ORDINARY: [f64; 2] = [0.8, 0.7];
 /// Half a play beyond which its time counts wholly, rad: less is told by no wire.
 const EXCUSED_RAD: f64 = 0.0025;
-/// Half a step of the steering currents' wire format over their range: 1.5 of 315 mA, with a little
-/// for the rounding.
-const HALF_STEP: f64 = 1.05 * 1.5 / 315.0;
-
 /// Errors of the front (0) or rear (1) joint over a run.
 #[must_use]
 pub(super) fn joint_errors(
@@ -81,7 +78,6 @@ pub(super) fn joint_errors(
 /// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.
 fn finer_openings(signals: &Signals, machine: &Machine, joint: usize) -> Samples {
     let asked = steer_opening_asked(signals, machine, &Effects::default(), joint);
-    let within =
-        |(asked, logged): (&f64, &f64)| asked.clamp(logged - HALF_STEP, logged + HALF_STEP);
+    let within = |(asked, logged): (&f64, &f64)| within_step(*asked, *logged, STEER_STEP);
     asked.iter().zip(&signals.steer_opening[joint]).map(within).collect()
 }

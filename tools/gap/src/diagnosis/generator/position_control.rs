@@ -3,11 +3,10 @@
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
+use super::current_step::{ARM_STEP as STEP, within_step};
 use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
-/// Opening of one milliampere of an arm valve's current (facts 1.1: 400 mA from start to full).
-const STEP: f64 = 1.0 / 400.0;
 /// The mode in which the PI is at work: manual position.
 const MANUAL_POSITION: f64 = 2.0;
 /// Halvings in the search for what was summed up: to a hundredth of the most.
@@ -94,7 +93,8 @@ impl Pi {
             let before = (asked - self.kp_per_mm * moved_mm).clamp(-self.most, self.most);
             let shut = if asked * end > 0.0 { 0.0 } else { asked };
             let [least, most] = [before.min(asked).min(shut), before.max(asked).max(shut)];
-            beyond_step(opening.clamp(least, most), *opening)
+            let asked = opening.clamp(least, most);
+            asked - within_step(asked, *opening, STEP)
         })
     }
 
@@ -117,17 +117,6 @@ pub(super) fn end_of(machine: &Machine, reading_m: f64) -> f64 {
     } else {
         0.0
     }
-}
-
-/// How far `asked` is from what shows as the current of `opening`: half a step below to a whole step
-/// above in size, or anything less than a step where there is no current.
-fn beyond_step(asked: f64, opening: f64) -> f64 {
-    let [below, above] = match opening {
-        0.0 => [STEP, STEP],
-        o if o > 0.0 => [0.5 * STEP, STEP],
-        _ => [STEP, 0.5 * STEP],
-    };
-    asked - asked.clamp(opening - below, opening + above)
 }
 
 #[cfg(test)]

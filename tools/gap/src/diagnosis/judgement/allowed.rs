@@ -119,6 +119,11 @@ fn vagueness(names: &[&str], generator: Generator, signal: Signal) -> f64 {
     here.map(|vague| vague.share).fold(0.0, f64::max)
 }
 
+/// Whether makes differ in the form of the law that is called `name`.
+pub(super) fn is_vague(name: &str) -> bool {
+    VAGUE.iter().any(|vague| vague.effects.contains(&name))
+}
+
 fn anywhere(_: Generator, _: Signal) -> bool {
     true
 }

@@ -6,7 +6,7 @@ use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 use super::super::knob::Knob;
-use super::allowed::{echoing, excess, recurring};
+use super::allowed::{echoing, excess, is_vague, recurring};
 use super::{Findings, Held};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
@@ -42,7 +42,7 @@ impl Findings {
     pub(super) fn objection(&self) -> Objection {
         let of_runs = self.signals_left().chain(self.recurring());
         let of_signals = of_runs.chain(self.held_left()).chain(self.echoing());
-        let all = of_signals.chain(furthest(&self.shifts)).chain([self.bending()]);
+        let all = of_signals.chain(self.furthest(&self.shifts)).chain([self.bending()]);
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
 
@@ -92,7 +92,7 @@ impl Findings {
             at: Some((after.generator, after.signal)),
             is_held: true,
         });
-        let bent = furthest(shifts).map(|bent| Objection {
+        let bent = self.furthest(shifts).map(|bent| Objection {
             times: bent.times / HELD,
             why: format!("{} in the runs held out", bent.why),
             is_held: true,
@@ -119,7 +119,8 @@ impl Findings {
     /// All tolerances together.
     fn bending(&self) -> Objection {
         let taken = SHIFTS + SHIFTS_SHARE * self.evidence();
-        let squares: f64 = self.shifts.iter().map(|(_, by)| by * by).sum();
+        let own = self.shifts.iter().filter(|(knob, _)| !self.is_its_form(knob));
+        let squares: f64 = own.map(|(_, by)| by * by).sum();
         Objection {
             times: squares / taken,
             why: format!(
@@ -129,17 +130,31 @@ impl Findings {
             is_held: false,
         }
     }
-}
 
-/// The tolerance that goes furthest.
-fn furthest(shifts: &[(Knob, f64)]) -> Option<Objection> {
-    let furthest = shifts.iter().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
-    furthest.map(|(knob, by)| Objection {
-        times: (by / SHIFT).powi(2),
-        why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
-        at: None,
-        is_held: false,
-    })
+    /// The tolerance that goes furthest.
+    fn furthest(&self, shifts: &[(Knob, f64)]) -> Option<Objection> {
+        let own = shifts.iter().filter(|(knob, _)| !self.is_its_form(knob));
+        let furthest = own.max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+        furthest.map(|(knob, by)| Objection {
+            times: (by / SHIFT).powi(2),
+            why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
+            at: None,
+            is_held: false,
+        })
+    }
+
+    /// Whether a tolerance says only in which form, or how much on which of its wheels, an effect is there
+    /// that is believed: about a nominal machine tolerances are straight lines, and a law that is
+    /// straighter than ours goes half along ours and half along them.
+    fn is_its_form(&self, knob: &Knob) -> bool {
+        let Knob::Effect(effect, _, scope) = knob else { return false };
+        let mut believed = self.believed().filter(|cause| is_vague(cause.name()));
+        believed.any(|cause| {
+            let of = &cause.fit.hypothesis;
+            let mut wheels = scope.wheels();
+            of.effect.name == effect.name && wheels.all(|wheel| of.scope.contains(wheel))
+        })
+    }
 }
 
 fn how_much([before, after]: [&Left; 2]) -> String {
@@ -226,6 +241,22 @@ mod tests {
         };
         assert!(times(Vec::new()) < 1.0);
         assert!(times(vec![[of("arm-delay"), of("payload")]]) > 1.5);
+    }
+
+    #[test]
+    fn tolerances_of_a_vague_law_on_its_own_wheels_say_only_its_form() {
+        let bent = |cause: &str, scope: Scope| {
+            let single = vec![Candidate::made_up(cause, scope, 900.0)];
+            let is_one = |knob: &Knob| {
+                matches!(knob, Knob::Effect(e, p, Scope::Wheel(Wheel::Ml))
+                    if e.name == "load-dependent-speed" && p.name == "droop")
+            };
+            let knob = Knob::all().into_iter().find(is_one).unwrap();
+            Findings { single, shifts: vec![(knob, 7.0)], ..Findings::default() }.objection().times
+        };
+        assert!(bent("load-dependent-speed", Scope::All) < 1.0);
+        assert!(bent("load-dependent-speed", Scope::Wheel(Wheel::Fr)) > 2.0);
+        assert!(bent("valve-gain", Scope::All) > 2.0);
     }
 
     #[test]

@@ -195,7 +195,7 @@ impl Drive {
         core::array::from_fn(|c| {
             let asked = self.target_rad_s(c, input);
             let arrived = state.asked_rad_s[c].step(asked, e.throttle_delay.delay_s, dt_s);
-            state.target_rad_s[c].step(arrived, e.lag.time_constant_s, dt_s)
+            e.lag.follow(&mut state.target_rad_s[c], arrived, dt_s)
         })
     }
 
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn a_lag_lets_the_speed_come_slowly() {
-        let lag = DriveLag { time_constant_s: 0.4 };
+        let lag = DriveLag { time_constant_s: 0.4, lead_s: 0.0 };
         let drive = with(DriveEffects { lag, ..DriveEffects::default() });
         let mut state = drive.at_rest(DT_S);
         let mut after = |steps| {

@@ -203,7 +203,11 @@ impl Generator {
             }
             Self::Joint(j) => {
                 let e = joints::joint_errors(s, machine, effects, j);
-                vec![one(Signal::JointAngle, e.slow_rad), one(Signal::JointFast, e.fast_rad)]
+                vec![
+                    one(Signal::JointAngle, e.slow_rad),
+                    one(Signal::JointFast, e.fast_rad),
+                    one(Signal::JointRelief, e.relief_rad_s),
+                ]
             }
             Self::SteerEcu(j) => {
                 let error = controllers::steer_opening_error(s, machine, effects, j);

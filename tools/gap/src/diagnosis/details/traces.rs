@@ -110,6 +110,7 @@ fn reading(
         (_, Signal::Weight) => ("weight, kN", 1e-3, None),
         (_, Signal::DrivePressure | Signal::DriveDifference) => ("pressure, bar", 1e-5, None),
         (Generator::Joint(_), Signal::JointFast) => ("joint angle, deg", deg, None),
+        (Generator::Joint(_), Signal::JointRelief) => ("joint rate, deg/s", deg, None),
         (_, Signal::DriveForce) => ("torque on a wheel, kNm", 1e-3, None),
         _ => (FLOORS, 1.0, None),
     }

@@ -21,6 +21,10 @@ pub(super) struct JointErrors {
     pub(super) slow_rad: Samples,
     /// What changes faster, rad: delays and lags.
     pub(super) fast_rad: Samples,
+    /// Rate at which the relief valve would have to let oil go for the joint to move as it does, mean over
+    /// [`SLOW_S`], rad/s, where that motion takes less torque than the valve holds: the torque that
+    /// stands hides by how much a rate is wrong.
+    pub(super) relief_rad_s: Samples,
 }
 
 /// What is slower is told by the scrub of tyres as much as by the valve, s.
@@ -30,6 +34,10 @@ const SLOW_S: f64 = 1.0;
 const ORDINARY: [f64; 2] = [0.8, 0.7];
 /// Half a play beyond which its time counts wholly, rad: less is told by no wire.
 const EXCUSED_RAD: f64 = 0.0025;
+/// Share of the relief valve's torque up to which a motion is sure to take less (assumed: what tyres take is
+/// known to a third).
+const SURELY_LESS: f64 = 0.85;
+
 /// Errors of the front (0) or rear (1) joint over a run.
 #[must_use]
 pub(super) fn joint_errors(
@@ -52,17 +60,22 @@ pub(super) fn joint_errors(
     // would be less without a play: counted as that, sound machines get one (docs/diagnosis-log.md, item 48).
     let excused = (half_play / EXCUSED_RAD).powi(2).min(1.0);
     let mut is_free = vec![false; signals.len];
+    let mut let_go_rad_s = vec![0.0; signals.len];
     let error: Samples = (0..signals.len)
         .map(|i| {
             let rate = steering.open(&mut state, openings[i], DT_S);
-            oil_rad = (oil_rad + rate * DT_S).clamp(angle[i] - reach, angle[i] + reach);
+            let led_rad = oil_rad + rate * DT_S;
+            oil_rad = led_rad.clamp(angle[i] - reach, angle[i] + reach);
+            let taken_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i] + scrub[i];
+            if taken_nm.abs() < SURELY_LESS * machine.articulation.torque_max_nm {
+                let_go_rad_s[i] = (led_rad - oil_rad) / DT_S;
+            }
             let gap = oil_rad - angle[i];
             let twist = gap - gap.clamp(-half_play, half_play);
             is_free[i] = half_play > 0.0 && twist == 0.0;
             if is_free[i] {
                 return 0.0;
             }
-            let taken_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i] + scrub[i];
             twist - taken_nm / stiffness_nm
         })
         .collect();
@@ -72,7 +85,7 @@ pub(super) fn joint_errors(
         slow_rad[i] = excused * ORDINARY[0] * Signal::JointAngle.floor().sigma;
         fast_rad[i] = excused * ORDINARY[1] * Signal::JointFast.floor().sigma;
     }
-    JointErrors { slow_rad, fast_rad }
+    JointErrors { slow_rad, fast_rad, relief_rad_s: moving_mean(&let_go_rad_s, SLOW_S) }
 }
 
 /// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.

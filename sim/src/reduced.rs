@@ -6,6 +6,7 @@
 //! those velocities (semi-implicit Euler, first order). `f64`, nothing allocated in a step, and
 //! solved to rounding: what comes out is as smooth in every parameter as the laws that go in.
 
+mod axle;
 mod bias;
 mod contact;
 mod factor;
@@ -23,7 +24,8 @@ use glam::{DMat3, DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
 use self::contact::{Body, Contact, Hold};
-use self::newton::{Balance, Convergence, Drag};
+use self::axle::Axle;
+use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search, patch};
@@ -92,7 +94,7 @@ impl Bodies for ReducedBodies {
         let inertias = Inertias::new(&self.tree, &pose);
         let mut contacts = core::mem::take(&mut self.contacts);
         self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
-        let balance = self.balance(&pose, &inertias, loads, dt_s);
+        let mut balance = self.balance(&pose, &inertias, loads, dt_s);
         let patches: [_; 6] =
             core::array::from_fn(|i| patch(&self.tree, i, (&pose, &self.state), dt_s));
         self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
@@ -189,16 +191,15 @@ impl ReducedBodies {
         for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {
             *lack = (*lack - from_ground) * dt_s;
         }
-        let brake = loads.hold_nm.0.map(|hold_nm| hold_nm * dt_s);
-        let drag = |i: usize| Drag::new(&loads.drag.0[i], s.rate[WHEELS + i], dt_s);
+        let axle = |i: usize| {
+            Axle::new(&loads.drag.0[i], loads.hold_nm.0[i], s.rate[WHEELS + i], dt_s)
+        };
         Balance {
             pose,
             inertias: &inertias.spatial,
             lack,
             hinge,
-            brake,
-            drag: core::array::from_fn(drag),
-            dt_s,
+            axles: core::array::from_fn(axle),
             mass_kg: self.tree.mass_kg,
         }
     }
@@ -209,11 +210,11 @@ impl ReducedBodies {
         let mut slid = [false; 6];
         self.search.stuck = [false; 6];
         for contact in contacts {
-            let force = contact.impulse(contact.velocity) / dt_s;
+            let force = contact.impulse() / dt_s;
             match contact.body {
                 Body::Wheel(i) => {
                     self.ground_force_n[Wheel::ALL[i]] += force.z;
-                    match contact.hold() {
+                    match contact.now.hold {
                         Hold::Open => (),
                         Hold::Sticks => self.search.stuck[i] = true,
                         Hold::Slides => slid[i] = true,

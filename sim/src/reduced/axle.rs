@@ -8,6 +8,9 @@ use crate::bodies::RollingDrag;
 
 /// Torque per creep of a holding brake, Nm s (assumed): as stiff as the contacts' friction.
 const BRAKE_CREEP_NMS: f64 = 1.0e8;
+/// A drag that has come this near to its most has no slope to speak of, as a share of its slope at rest:
+/// what is left would not even show in how fast the solver ends, but factors need not be taken anew.
+const SATURATED: f64 = 1.0e-8;
 
 /// Rolling resistance over a step: its torque as of the step's start, and what becomes of it as the wheel
 /// turns slower or faster.
@@ -82,7 +85,10 @@ impl Axle {
         if self.drag.most > 0.0 {
             let share = saturating_tanh(rate_rad_s * self.drag.per_fade_s_rad);
             made.impulse = self.drag.most * (self.drag.start - share);
-            made.slope = self.drag.most * self.drag.per_fade_s_rad * (1.0 - share * share);
+            let left = 1.0 - share * share;
+            if left > SATURATED {
+                made.slope = self.drag.most * self.drag.per_fade_s_rad * left;
+            }
         }
         let holds = self.creep * rate_rad_s;
         if holds.abs() < self.brake {

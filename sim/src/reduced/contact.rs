@@ -148,7 +148,11 @@ impl Contact {
         let grip = [self.hold[0] + self.stick[0] * v1, self.hold[1] + self.stick[1] * v2];
         let (size2, most) = (grip[0] * grip[0] + grip[1] * grip[1], self.friction * normal);
         if size2 <= most * most || self.held {
-            return Made { velocity_m_s, impulse: [normal, -grip[0], -grip[1]], hold: Hold::Sticks };
+            return Made {
+                velocity_m_s,
+                impulse: [normal, -grip[0], -grip[1]],
+                hold: Hold::Sticks,
+            };
         }
         let share = most / size2.sqrt();
         let impulse = [normal, -grip[0] * share, -grip[1] * share];
@@ -211,9 +215,8 @@ impl Contact {
     /// Looks at `share` of the step; how much what was missed there works along it.
     #[inline]
     pub(super) fn try_share(&mut self, share: f64) -> f64 {
-        self.next = self.made(core::array::from_fn(|i| {
-            self.now.velocity_m_s[i] + share * self.step[i]
-        }));
+        self.next =
+            self.made(core::array::from_fn(|i| self.now.velocity_m_s[i] + share * self.step[i]));
         let mut work = 0.0;
         for i in 0..3 {
             self.missed[i] = self.now.impulse[i] - share * self.taken[i] - self.next.impulse[i];
@@ -247,9 +250,8 @@ impl Contact {
         let [[out, one, two], [_, b1, b2], [_, c1, c2]] = self.matrix;
         let [normal, first, second] = &self.wrench;
         // Only the normal velocity changes the normal impulse.
-        let along = |a: f64, b: f64| -> Spatial {
-            core::array::from_fn(|i| a * first[i] + b * second[i])
-        };
+        let along =
+            |a: f64, b: f64| -> Spatial { core::array::from_fn(|i| a * first[i] + b * second[i]) };
         let mut columns = [along(one, two), along(b1, b2), along(c1, c2)];
         add_scaled(&mut columns[0], normal, out);
         for (j, out) in body.iter_mut().enumerate() {

@@ -22,7 +22,7 @@ struct Pivot {
 }
 
 /// The factors.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Factors {
     pivot: [Pivot; FREEDOMS - 6],
     /// What each wheel with its arm is to its frame.
@@ -36,12 +36,7 @@ impl Factors {
     /// Nothing factored yet.
     pub(super) const fn new() -> Self {
         let none = Pivot { column: ZERO, row: ZERO, inverse: 0.0 };
-        Self {
-            pivot: [none; FREEDOMS - 6],
-            handed: [ZERO6; 6],
-            stiffening: [None; 6],
-            root: ZERO6,
-        }
+        Self { pivot: [none; FREEDOMS - 6], handed: [ZERO6; 6], stiffening: [None; 6], root: ZERO6 }
     }
 
     /// What stiffens the hinge of wheel `i` in these factors, kg m²; `None` where it was not taken yet.
@@ -54,23 +49,26 @@ impl Factors {
         self.stiffening = [None; 6];
     }
 
-    /// Eliminates wheel `i` and its arm: matrices of both on their twists, and of the freedoms' own rates
-    /// (implicit springs, dampers, brakes, times the step, kg m²; the first six have none). `None` if
-    /// there is no positive pivot, which friction that jams an arm can do.
+    /// Eliminates wheel `i` and its arm: the matrix of both on their twist, contacts among it, and those of
+    /// the freedoms' own rates (implicit springs, dampers, brakes, times the step, kg m²; the first six
+    /// have none). `None` if there is no positive pivot, which friction that jams an arm can do.
+    ///
+    /// `both` writes that matrix; `arm_column` is the arm's alone times the wheel's twist against it.
+    #[inline]
     pub(super) fn take_wheel(
         &mut self,
         pose: &Pose,
         i: usize,
-        wheel: &Spatial6,
-        arm: &Spatial6,
+        both: impl FnOnce(&mut Spatial6),
+        arm_column: &Spatial,
         hinge: &Generalized,
     ) -> Option<()> {
         self.stiffening[i] = None;
         let (body, at) = (&mut self.handed[i], &pose.arm[i]);
-        *body = *wheel;
-        self.pivot[WHEELS + i - 6] = eliminate(body, &at.wheel_axis, hinge[WHEELS + i])?;
-        add6(body, arm);
-        self.pivot[ARMS + i - 6] = eliminate(body, &at.arm_axis, hinge[ARMS + i])?;
+        both(body);
+        self.pivot[WHEELS + i - 6] =
+            eliminate(body, &at.wheel_axis, hinge[WHEELS + i], arm_column)?;
+        self.pivot[ARMS + i - 6] = eliminate(body, &at.arm_axis, hinge[ARMS + i], &ZERO)?;
         self.stiffening[i] = Some(hinge[WHEELS + i]);
         Some(())
     }
@@ -89,9 +87,9 @@ impl Factors {
         for i in (0..2).rev() {
             let k = JOINTS + i;
             let (ahead, behind) = frame.split_at_mut(i + 1);
-            pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k])?;
+            pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k], &ZERO)?;
             if let (0, Some(axis)) = (i, &pose.roll_axis) {
-                pivot[ROLL - 6] = eliminate(&mut behind[0], axis, hinge[ROLL])?;
+                pivot[ROLL - 6] = eliminate(&mut behind[0], axis, hinge[ROLL], &ZERO)?;
             }
             add6(&mut ahead[i], &behind[0]);
         }
@@ -156,10 +154,21 @@ impl Factors {
     }
 }
 
-/// Takes a hinge out of a body's matrix; what is left is what its parent feels.
-fn eliminate(body: &mut Spatial6, axis: &Spatial, stiffening: f64) -> Option<Pivot> {
-    let column = apply(body, axis);
-    let row = apply_transposed(body, axis);
+/// Takes a hinge out of a body's matrix; what is left is what its parent feels. `apart` is how much of
+/// the matrix does not move with the hinge, times its axis.
+#[inline]
+fn eliminate(
+    body: &mut Spatial6,
+    axis: &Spatial,
+    stiffening: f64,
+    apart: &Spatial,
+) -> Option<Pivot> {
+    let mut column = apply(body, axis);
+    let mut row = apply_transposed(body, axis);
+    for i in 0..6 {
+        column[i] -= apart[i];
+        row[i] -= apart[i];
+    }
     let pivot = dot(axis, &column) + stiffening;
     if pivot.is_nan() || pivot <= 0.0 {
         return None;

@@ -32,7 +32,7 @@ const HINGE_INERTIA_KG_M2: f64 = 100.0;
 /// The dynamics of one step but for contacts.
 pub(super) struct Balance<'a> {
     pub(super) pose: &'a Pose,
-    pub(super) inertias: &'a BodyInertias<Spatial6>,
+    pub(super) inertias: &'a BodyInertias,
     /// Impulse that the velocities at the step's start lack, N s and Nm s.
     pub(super) lack: Generalized,
     /// Implicit springs and dampers of the hinges, times the step, kg m².
@@ -54,8 +54,13 @@ impl Balance<'_> {
     ///
     /// Contacts that are `held` are let go after the first iteration. Those that stuck in the last
     /// step should be: on uneven ground they start this one with a creep that reads as sliding.
-    pub(super) fn solve(&mut self, rate: &mut Generalized, contacts: &mut [Contact]) -> Convergence {
-        let mut factors = Factors::new();
+    pub(super) fn solve(
+        &mut self,
+        rate: &mut Generalized,
+        contacts: &mut [Contact],
+        factors: &mut Factors,
+    ) -> Convergence {
+        factors.forget();
         let twists = Twists::new(self.pose, rate);
         for contact in contacts.iter_mut() {
             contact.guess(twists.of(contact.body));
@@ -71,7 +76,7 @@ impl Balance<'_> {
                 break;
             }
             let coupled = iteration < CAUTIOUS_FROM;
-            let Some(step) = self.direction(&residual, contacts, coupled, &mut factors) else {
+            let Some(step) = self.direction(&residual, contacts, coupled, factors) else {
                 break;
             };
             let share = if held {
@@ -120,12 +125,7 @@ impl Balance<'_> {
 
     /// Factors the derivative of the residual. Of wheels on which nothing changed since the last time the
     /// factors are left as they are.
-    fn factor(
-        &self,
-        contacts: &mut [Contact],
-        coupled: bool,
-        factors: &mut Factors,
-    ) -> Option<()> {
+    fn factor(&self, contacts: &mut [Contact], coupled: bool, factors: &mut Factors) -> Option<()> {
         let mut changed = [false; 6];
         for contact in contacts.iter_mut() {
             if contact.derive(coupled)
@@ -138,11 +138,13 @@ impl Balance<'_> {
         for (i, changed) in changed.into_iter().enumerate() {
             hinge[WHEELS + i] += self.axles[i].slope();
             if changed || factors.wheel_stiffening(i) != Some(hinge[WHEELS + i]) {
-                let mut wheel = self.inertias.wheel[i];
-                for contact in contacts.iter().filter(|c| c.body == Body::Wheel(i)) {
-                    contact.add_to(&mut wheel);
-                }
-                factors.take_wheel(self.pose, i, &wheel, &self.inertias.arm[i], &hinge)?;
+                let both = |out: &mut Spatial6| {
+                    *out = self.inertias.arm[i];
+                    for contact in contacts.iter().filter(|c| c.body == Body::Wheel(i)) {
+                        contact.add_to(out);
+                    }
+                };
+                factors.take_wheel(self.pose, i, both, &self.inertias.arm_column[i], &hinge)?;
             }
         }
         let mut frame = self.inertias.frame;

@@ -112,16 +112,33 @@ pub(super) fn cross_motion(v: &Spatial, s: &Spatial) -> Spatial {
 /// Writes the inertia about the common point of `mass_kg` at `com`, with `about_com` in world axes.
 #[inline]
 pub(super) fn write_rigid(out: &mut Spatial6, mass_kg: f64, com: DVec3, about_com: &DMat3) {
-    let (c, m) = (com, mass_kg);
-    let moment = c * m;
-    let square = m * c.length_squared();
-    for j in 0..3 {
-        let mut column = about_com.col(j) - c * moment[j];
+    *out = rigid(mass_kg, com, about_com);
+}
+
+/// Adds that inertia.
+#[inline]
+pub(super) fn add_rigid(out: &mut Spatial6, mass_kg: f64, com: DVec3, about_com: &DMat3) {
+    add6(out, &rigid(mass_kg, com, about_com));
+}
+
+#[inline(always)]
+fn rigid(mass_kg: f64, com: DVec3, about_com: &DMat3) -> Spatial6 {
+    let moment = com * mass_kg;
+    let square = moment.dot(com);
+    let [a, b, c] = [0, 1, 2].map(|j| {
+        let mut column = about_com.col(j) - com * moment[j];
         column[j] += square;
-        let across = DVec3::AXES[j].cross(moment);
-        out[j] = join(column, across);
-        out[3 + j] = join(-across, DVec3::AXES[j] * m);
-    }
+        column
+    });
+    let (m, DVec3 { x, y, z }) = (mass_kg, moment);
+    [
+        [a.x, a.y, a.z, 0.0, -z, y],
+        [b.x, b.y, b.z, z, 0.0, -x],
+        [c.x, c.y, c.z, -y, x, 0.0],
+        [0.0, z, -y, m, 0.0, 0.0],
+        [-z, 0.0, x, 0.0, m, 0.0],
+        [y, -x, 0.0, 0.0, 0.0, m],
+    ]
 }
 
 /// `x.tanh()`, which is one to the last bit from some 19 on, without asking there.

@@ -8,7 +8,9 @@ use super::ReducedBodies;
 use super::factor::Factors;
 use super::newton::Convergence;
 use super::pose::{FREEDOMS, Generalized, Inertias, Pose, ROLL, State, WHEELS};
-use super::spatial::{Spatial, Spatial6, angular, apply, dot, linear, velocity_at, wrench_at};
+use super::spatial::{
+    Spatial, Spatial6, ZERO6, angular, apply, dot, linear, velocity_at, wrench_at, write_rigid,
+};
 use super::tree::Tree;
 use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
 use crate::{Effects, HullBall, Parts, RollHinge, Terrain, TyrePart};
@@ -37,18 +39,31 @@ fn bent(seed: f64) -> State {
     }
 }
 
+fn inertias(tree: &Tree, pose: &Pose) -> Inertias {
+    let mut inertias = Inertias::default();
+    inertias.renew(tree, pose);
+    inertias
+}
+
 /// Twists of all bodies under generalised velocities, with each body's spatial inertia applied.
 fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Spatial, Spatial)> {
     let pose = Pose::new(tree, state);
-    let inertias = Inertias::new(tree, &pose).spatial;
+    let about = inertias(tree, &pose).about_com;
+    let of = |mass_kg: f64, com: DVec3, about: &DMat3, twist: &Spatial| {
+        let mut inertia = ZERO6;
+        write_rigid(&mut inertia, mass_kg, com, about);
+        (*twist, apply(&inertia, twist))
+    };
     let frames = pose.frame_twists(rate);
-    let mut out: Vec<(Spatial, Spatial)> =
-        (0..3).map(|i| (frames[i], apply(&inertias.frame[i], &frames[i]))).collect();
+    let mut out: Vec<(Spatial, Spatial)> = (0..3)
+        .map(|i| of(tree.frames[i].mass_kg, pose.frame[i].com, &about.frame[i], &frames[i]))
+        .collect();
     for i in 0..6 {
         let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], rate);
         let wheel = pose.wheel_twist(i, &arm, rate);
-        out.push((arm, apply(&inertias.arm[i], &arm)));
-        out.push((wheel, apply(&inertias.wheel[i], &wheel)));
+        let (part, at) = (&tree.arms[i], &pose.arm[i]);
+        out.push(of(part.mass_kg, at.com, &about.arm[i], &arm));
+        out.push(of(part.wheel_kg, at.wheel, &about.wheel[i], &wheel));
     }
     out
 }
@@ -96,10 +111,10 @@ proptest! {
         let state = bent(seed);
         let (pose, inertias) = {
             let pose = Pose::new(&tree, &state);
-            let inertias = Inertias::new(&tree, &pose).spatial;
+            let inertias = inertias(&tree, &pose).spatial;
             (pose, inertias)
         };
-        let (mut frame, mut wheel) = (inertias.frame, inertias.wheel);
+        let (mut frame, mut both) = (inertias.frame, inertias.arm);
         let hinge: Generalized = core::array::from_fn(|k| {
             if k < 6 { 0.0 } else { 100.0 * (1.0 + (seed * k as f64).sin()) }
         });
@@ -107,7 +122,7 @@ proptest! {
         let g = DMat3::from_cols_array(&[9e2, 0.0, 0.0, 0.0, 4e2, 0.0,
             if sliding { -3e2 } else { 0.0 }, 0.0, 7e2]);
         let at = pose.arm[3].wheel - DVec3::Z * 0.7;
-        add_at_point(&mut wheel[3], &g, at);
+        add_at_point(&mut both[3], &g, at);
         add_at_point(&mut frame[1], &g, pose.frame[1].com);
 
         let mut right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
@@ -115,8 +130,10 @@ proptest! {
             right[ROLL] = 0.0;
         }
         let mut factors = Factors::new();
-        for (i, wheel) in wheel.iter().enumerate() {
-            prop_assert!(factors.take_wheel(&pose, i, wheel, &inertias.arm[i], &hinge).is_some());
+        for (i, both) in both.iter().enumerate() {
+            let column = &inertias.arm_column[i];
+            let taken = factors.take_wheel(&pose, i, |out| *out = *both, column, &hinge);
+            prop_assert!(taken.is_some());
         }
         prop_assert!(factors.take_frames(&pose, frame, &hinge).is_some());
         let x = factors.solve(&pose, &right);

@@ -97,8 +97,9 @@ pub(super) struct Contact {
     step: Local,
     /// What it would take from the impulse if the law were linear, N s.
     taken: Local,
-    /// Minus the derivative of the impulse at the present guess by columns, kg.
+    /// Minus the derivative of the impulse at a guess by columns, kg, and what it did there.
     matrix: [Local; 3],
+    derived: Hold,
     /// By how much the impulse tried is not the one foreseen, N s.
     pub(super) missed: Local,
 }
@@ -133,6 +134,7 @@ impl Contact {
             step: [0.0; 3],
             taken: [0.0; 3],
             matrix: [[0.0; 3]; 3],
+            derived: Hold::Open,
             missed: [0.0; 3],
         }
     }
@@ -201,7 +203,13 @@ impl Contact {
     pub(super) fn derive(&mut self, coupled: bool) -> bool {
         let before = self.matrix;
         self.matrix = self.derivative(coupled);
+        self.derived = self.now.hold;
         self.matrix != before
+    }
+
+    /// Whether it does what it did where the derivative was taken.
+    pub(super) fn holds_as_derived(&self) -> bool {
+        self.derived == self.now.hold
     }
 
     /// Takes what the solver would add to the body's twist.

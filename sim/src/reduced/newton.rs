@@ -24,6 +24,9 @@ const TOLERANCE_M_S: f64 = 1.0e-9;
 const ITERATIONS_MAX: usize = 60;
 /// From here on the matrix leaves out that sliding friction follows the normal force: slower, surer.
 const CAUTIOUS_FROM: usize = 20;
+/// Below this residual factors of an iteration ago are near enough, m/s: a step with them costs a third, and
+/// leaves about this share of the residual.
+const NEAR_M_S: f64 = 1.0e-4;
 /// Radius at which a front-frame torque counts as much as a force, m.
 const MACHINE_RADIUS_M: f64 = 2.0;
 /// What a hinge's torque moves at least, kg m²: half a wheel.
@@ -68,6 +71,7 @@ impl Balance<'_> {
         let made = self.generalised(contacts, |c| &c.now.impulse, Axle::impulse);
         let mut residual: Generalized = core::array::from_fn(|k| self.lack[k] - made[k]);
         let mut report = Convergence::default();
+        let mut last_m_s = f64::INFINITY;
         for iteration in 0..ITERATIONS_MAX {
             report.residual_m_s = self.size_m_s(&residual);
             report.iterations = iteration;
@@ -76,7 +80,12 @@ impl Balance<'_> {
                 break;
             }
             let coupled = iteration < CAUTIOUS_FROM;
-            let Some(step) = self.direction(&residual, contacts, coupled, factors) else {
+            let near = report.residual_m_s < NEAR_M_S.min(0.1 * last_m_s)
+                && contacts.iter().all(Contact::holds_as_derived);
+            last_m_s = report.residual_m_s;
+            let step = if near { self.step(&residual, contacts, factors) } else { None };
+            let step = step.or_else(|| self.direction(&residual, contacts, coupled, factors));
+            let Some(step) = step else {
                 break;
             };
             let share = if held {
@@ -106,21 +115,36 @@ impl Balance<'_> {
         factors: &mut Factors,
     ) -> Option<Generalized> {
         if self.factor(contacts, coupled, factors).is_some() {
-            let step = factors.solve(self.pose, &residual.map(|r| -r));
-            if !coupled || dot20(&step, residual) < 0.0 {
-                let twists = Twists::new(self.pose, &step);
-                for contact in contacts.iter_mut() {
-                    contact.set_step(twists.of(contact.body));
-                }
-                for (axle, step_rad_s) in self.axles.iter_mut().zip(&step[WHEELS..]) {
-                    axle.set_step(*step_rad_s);
-                }
-                return Some(step);
+            let step = self.step(residual, contacts, factors);
+            if step.is_some() {
+                return step;
             }
         }
         factors.forget();
         // Friction that jams an arm has no descent with it; without it there always is one.
         if coupled { self.direction(residual, contacts, false, factors) } else { None }
+    }
+
+    /// The step with these factors, if it leads down.
+    fn step(
+        &mut self,
+        residual: &Generalized,
+        contacts: &mut [Contact],
+        factors: &Factors,
+    ) -> Option<Generalized> {
+        let step = factors.solve(self.pose, &residual.map(|r| -r));
+        let onward = dot20(&step, residual);
+        if onward.is_nan() || onward > 0.0 {
+            return None;
+        }
+        let twists = Twists::new(self.pose, &step);
+        for contact in contacts.iter_mut() {
+            contact.set_step(twists.of(contact.body));
+        }
+        for (axle, step_rad_s) in self.axles.iter_mut().zip(&step[WHEELS..]) {
+            axle.set_step(*step_rad_s);
+        }
+        Some(step)
     }
 
     /// Factors the derivative of the residual. Of wheels on which nothing changed since the last time the

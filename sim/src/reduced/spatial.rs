@@ -48,7 +48,11 @@ pub(super) fn velocity_at(twist: &Spatial, at: DVec3) -> DVec3 {
 
 #[inline]
 pub(super) fn dot(a: &Spatial, b: &Spatial) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+    // Even and odd apart: two sums that a processor makes at once.
+    let products: Spatial = core::array::from_fn(|i| a[i] * b[i]);
+    let [p, q, r, s, t, u] = products;
+    let [even, odd] = [(p + r) + t, (q + s) + u];
+    even + odd
 }
 
 /// `a += b * by`.
@@ -141,10 +145,15 @@ fn rigid(mass_kg: f64, com: DVec3, about_com: &DMat3) -> Spatial6 {
     ]
 }
 
-/// `x.tanh()`, which is one to the last bit from some 19 on, without asking there.
+/// `x.tanh()` in half the time but near zero; to the last bit one from some 19 on.
 #[inline]
 pub(super) fn saturating_tanh(x: f64) -> f64 {
-    if x.abs() < 19.5 { x.tanh() } else { 1.0_f64.copysign(x) }
+    let size = x.abs();
+    if size < 1.0 {
+        return x.tanh();
+    }
+    let fallen = if size < 19.5 { (-2.0 * size).exp() } else { 0.0 };
+    ((1.0 - fallen) / (1.0 + fallen)).copysign(x)
 }
 
 #[cfg(test)]

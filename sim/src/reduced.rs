@@ -6,6 +6,7 @@
 //! those velocities (semi-implicit Euler, first order). `f64`, nothing allocated in a step, and
 //! solved to rounding: what comes out is as smooth in every parameter as the laws that go in.
 
+mod axle;
 mod bias;
 mod contact;
 mod factor;
@@ -22,8 +23,10 @@ mod tree;
 use glam::{DMat3, DQuat, DVec3};
 use xt28_machine::{PerWheel, Wheel};
 
+use self::axle::Axle;
 use self::contact::{Body, Contact, Hold};
-use self::newton::{Balance, Convergence, Drag};
+use self::factor::Factors;
+use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search, patch};
@@ -37,8 +40,10 @@ pub struct ReducedBodies {
     tree: Tree,
     search: Search,
     state: State,
-    /// Those of the last step; here so that a step allocates nothing.
+    /// These three are of the last step and only here so that none is made anew.
     contacts: Vec<Contact>,
+    inertias: Inertias,
+    factors: Factors,
     ground_force_n: PerWheel<f64>,
     chassis_force_n: f64,
     convergence: Convergence,
@@ -63,6 +68,8 @@ impl Bodies for ReducedBodies {
             search: Search::new(terrain.clone()),
             state,
             contacts: Vec::with_capacity(CONTACTS_MAX),
+            inertias: Inertias::default(),
+            factors: Factors::new(),
             ground_force_n: PerWheel::splat(0.0),
             chassis_force_n: 0.0,
             convergence: Convergence::default(),
@@ -89,13 +96,15 @@ impl Bodies for ReducedBodies {
 
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
         let pose = Pose::new(&self.tree, &self.state);
-        let inertias = Inertias::new(&self.tree, &pose);
+        self.inertias.renew(&self.tree, &pose);
         let mut contacts = core::mem::take(&mut self.contacts);
         self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
-        let balance = self.balance(&pose, &inertias, loads, dt_s);
+        let mut balance = balance((&self.tree, &self.state), (&pose, &self.inertias), loads, dt_s);
+        let mut rate = self.state.rate;
         let patches: [_; 6] =
             core::array::from_fn(|i| patch(&self.tree, i, (&pose, &self.state), dt_s));
-        self.convergence = balance.solve(&mut self.state.rate, &mut contacts);
+        self.convergence = balance.solve(&mut rate, &mut contacts, &mut self.factors);
+        self.state.rate = rate;
         for (i, patch) in patches.iter().enumerate() {
             let own = contacts.iter().filter(|contact| contact.body == Body::Wheel(i));
             self.state.bristle_m[i] = patch.end_m(own);
@@ -143,77 +152,25 @@ impl Clone for ReducedBodies {
             search: self.search.clone(),
             state: self.state.clone(),
             contacts,
+            inertias: self.inertias.clone(),
+            factors: self.factors.clone(),
             ..*self
         }
     }
 }
 
 impl ReducedBodies {
-    /// What the step's velocities have to balance, but for contacts and brakes.
-    fn balance<'a>(
-        &self,
-        pose: &'a Pose,
-        inertias: &'a Inertias,
-        loads: &Loads,
-        dt_s: f64,
-    ) -> Balance<'a> {
-        let s = &self.state;
-        let about_com = &inertias.about_com;
-        let mut lack = bias::bias(&self.tree, pose, about_com, &s.rate, self.tree.gravity);
-        let mut hinge = [0.0; FREEDOMS];
-        let mut spring = |k: usize, spring: &HingeSpring, angle_rad: f64| {
-            let HingeSpring { stiffness_nm, damping_nms, rest_rad } = *spring;
-            let ahead_rad = angle_rad + dt_s * s.rate[k];
-            lack[k] += stiffness_nm * (ahead_rad - rest_rad) + damping_nms * s.rate[k];
-            hinge[k] = dt_s * (damping_nms + dt_s * stiffness_nm);
-        };
-        for i in 0..2 {
-            spring(JOINTS + i, &loads.joint[i], s.joint_rad[i]);
-        }
-        for i in 0..6 {
-            spring(ARMS + i, &loads.arm.0[i], s.arm_rad[i]);
-        }
-        if let Some(roll) = &self.tree.roll {
-            let motion = HingeMotion { angle_rad: s.roll_rad, rate_rad_s: s.rate[ROLL] };
-            spring(ROLL, &HingeSpring::of_roll(roll, motion), s.roll_rad);
-        }
-        let mut on_wheel = [spatial::ZERO; 6];
-        for i in 0..6 {
-            lack[WHEELS + i] -= loads.drive_nm.0[i];
-            let (arm, outside) = (&pose.arm[i], &loads.on_wheel.0[i]);
-            let force = DVec3::from(outside.force_n);
-            let torque = arm.axle * loads.drag.0[i].torque_nm + DVec3::from(outside.torque_nm);
-            on_wheel[i] = spatial::join(torque + arm.wheel.cross(force), force);
-        }
-        let from_ground = newton::generalised(pose, &on_wheel, [spatial::ZERO; 3]);
-        for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {
-            *lack = (*lack - from_ground) * dt_s;
-        }
-        let brake = loads.hold_nm.0.map(|hold_nm| hold_nm * dt_s);
-        let drag = |i: usize| Drag::new(&loads.drag.0[i], s.rate[WHEELS + i], dt_s);
-        Balance {
-            pose,
-            inertias: &inertias.spatial,
-            lack,
-            hinge,
-            brake,
-            drag: core::array::from_fn(drag),
-            dt_s,
-            mass_kg: self.tree.mass_kg,
-        }
-    }
-
     fn note_forces(&mut self, contacts: &[Contact], dt_s: f64) {
         self.ground_force_n = PerWheel::splat(0.0);
         self.chassis_force_n = 0.0;
         let mut slid = [false; 6];
         self.search.stuck = [false; 6];
         for contact in contacts {
-            let force = contact.impulse(contact.velocity) / dt_s;
+            let force = contact.impulse() / dt_s;
             match contact.body {
                 Body::Wheel(i) => {
                     self.ground_force_n[Wheel::ALL[i]] += force.z;
-                    match contact.hold() {
+                    match contact.now.hold {
                         Hold::Open => (),
                         Hold::Sticks => self.search.stuck[i] = true,
                         Hold::Slides => slid[i] = true,
@@ -225,6 +182,55 @@ impl ReducedBodies {
         for (stuck, slid) in self.search.stuck.iter_mut().zip(slid) {
             *stuck &= !slid;
         }
+    }
+}
+
+/// What the step's velocities have to balance, but for contacts and brakes.
+fn balance<'a>(
+    (tree, s): (&Tree, &State),
+    (pose, inertias): (&'a Pose, &'a Inertias),
+    loads: &Loads,
+    dt_s: f64,
+) -> Balance<'a> {
+    let about_com = &inertias.about_com;
+    let mut lack = bias::bias(tree, pose, about_com, &s.rate, tree.gravity);
+    let mut hinge = [0.0; FREEDOMS];
+    let mut spring = |k: usize, spring: &HingeSpring, angle_rad: f64| {
+        let HingeSpring { stiffness_nm, damping_nms, rest_rad } = *spring;
+        let ahead_rad = angle_rad + dt_s * s.rate[k];
+        lack[k] += stiffness_nm * (ahead_rad - rest_rad) + damping_nms * s.rate[k];
+        hinge[k] = dt_s * (damping_nms + dt_s * stiffness_nm);
+    };
+    for i in 0..2 {
+        spring(JOINTS + i, &loads.joint[i], s.joint_rad[i]);
+    }
+    for i in 0..6 {
+        spring(ARMS + i, &loads.arm.0[i], s.arm_rad[i]);
+    }
+    if let Some(roll) = &tree.roll {
+        let motion = HingeMotion { angle_rad: s.roll_rad, rate_rad_s: s.rate[ROLL] };
+        spring(ROLL, &HingeSpring::of_roll(roll, motion), s.roll_rad);
+    }
+    let mut on_wheel = [spatial::ZERO; 6];
+    for i in 0..6 {
+        lack[WHEELS + i] -= loads.drive_nm.0[i];
+        let (arm, outside) = (&pose.arm[i], &loads.on_wheel.0[i]);
+        let force = DVec3::from(outside.force_n);
+        let torque = arm.axle * loads.drag.0[i].torque_nm + DVec3::from(outside.torque_nm);
+        on_wheel[i] = spatial::join(torque + arm.wheel.cross(force), force);
+    }
+    let from_ground = newton::generalised(pose, &on_wheel, [spatial::ZERO; 3]);
+    for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {
+        *lack = (*lack - from_ground) * dt_s;
+    }
+    let axle = |i: usize| Axle::new(&loads.drag.0[i], loads.hold_nm.0[i], s.rate[WHEELS + i], dt_s);
+    Balance {
+        pose,
+        inertias: &inertias.spatial,
+        lack,
+        hinge,
+        axles: core::array::from_fn(axle),
+        mass_kg: tree.mass_kg,
     }
 }
 

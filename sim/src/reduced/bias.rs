@@ -1,8 +1,8 @@
 //! What the bodies' own motion and weight ask of each freedom: recursive Newton-Euler.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use super::pose::{ARMS, BodyInertias, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS, gather};
+use super::pose::{ARMS, AboutCom, FREEDOMS, Generalized, JOINTS, Pose, ROLL, WHEELS, gather};
 use super::spatial::{
     Spatial, add, add_scaled, angular, cross_motion, dot, linear, velocity_at, wrench_at,
 };
@@ -14,7 +14,7 @@ use super::tree::Tree;
 pub(super) fn bias(
     tree: &Tree,
     pose: &Pose,
-    about_com: &BodyInertias<DMat3>,
+    about_com: &AboutCom,
     rate: &Generalized,
     gravity: DVec3,
 ) -> Generalized {

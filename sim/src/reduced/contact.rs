@@ -7,7 +7,9 @@
 //! contact's [`Grip`]: springs of a tyre's patch, or a creep in proportion to the force, as every
 //! solver of rigid friction must let it or not know its force.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
+
+use super::spatial::{Spatial, Spatial6, ZERO, add_scaled, dot, wrench_at};
 
 /// Sideways force per creep while a rigid contact sticks, N s/m (assumed): 10 kN creep 0.1 mm/s.
 const CREEP_N_S_M: f64 = 1.0e8;
@@ -20,21 +22,24 @@ pub(super) struct ContactLaw {
     pub(super) friction: f64,
 }
 
+/// A vector along a contact's axes: out of the ground first, then two directions along it.
+pub(super) type Local = [f64; 3];
+
 /// Sideways impulse against a velocity of the point, as far as friction carries it:
-/// hold + stick velocity.
+/// hold + stick velocity, along two directions that are square to the normal and to one another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
+    pub(super) along: [DVec3; 2],
     /// Impulse on the ground at no velocity, N s.
-    pub(super) hold: DVec3,
-    /// Its growth with the velocity, kg; nothing along the normal.
-    pub(super) stick: DMat3,
+    pub(super) hold: [f64; 2],
+    /// Its growth with the velocity, kg.
+    pub(super) stick: [f64; 2],
 }
 
 impl Grip {
     /// A rigid contact's.
-    pub(super) fn rigid(normal: DVec3, dt_s: f64) -> Self {
-        let across = DMat3::IDENTITY - outer(normal, normal);
-        Self { hold: DVec3::ZERO, stick: across * (CREEP_N_S_M * dt_s) }
+    pub(super) const fn rigid(along: [DVec3; 2], dt_s: f64) -> Self {
+        Self { along, hold: [0.0; 2], stick: [CREEP_N_S_M * dt_s; 2] }
     }
 }
 
@@ -56,50 +61,52 @@ pub(super) enum Hold {
     Slides,
 }
 
+/// What a contact makes at one velocity.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Made {
+    pub(super) velocity_m_s: Local,
+    /// On the body, N s.
+    pub(super) impulse: Local,
+    pub(super) hold: Hold,
+}
+
 /// A point of a body at the ground, ready for the step's solver.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Contact {
     pub(super) body: Body,
-    /// From the front frame's origin.
-    pub(super) at: DVec3,
-    /// Out of the ground.
-    pub(super) normal: DVec3,
+    /// Out of the ground, and the two directions of the grip.
+    pub(super) axes: [DVec3; 3],
+    /// Wrenches of unit forces along the axes about the front frame's origin.
+    wrench: [Spatial; 3],
     /// Impulse if the point stood still, N s.
     push: f64,
     /// Impulse that a normal velocity takes away, kg.
     slope: f64,
-    grip: Grip,
+    hold: [f64; 2],
+    stick: [f64; 2],
     friction: f64,
     /// Share of the law that this contact is of.
     pub(super) weight: f64,
     /// Taken to stick however much force that needs: a first guess.
     pub(super) held: bool,
-    /// Velocity of the point at the solver's present guess, m/s.
-    pub(super) velocity: DVec3,
-    /// What the solver's present step would add to it, m/s.
-    pub(super) step: DVec3,
-    /// [`Self::slope`] at the present guess, kg.
-    pub(super) matrix: DMat3,
+    /// At the solver's present guess.
+    pub(super) now: Made,
+    /// At the guess that is tried.
+    next: Made,
+    /// What the solver's present step would add to the velocity, m/s.
+    step: Local,
+    /// What it would take from the impulse if the law were linear, N s.
+    taken: Local,
+    /// Minus the derivative of the impulse at a guess by columns, kg, and what it did there.
+    matrix: [Local; 3],
+    derived: Hold,
+    /// By how much the impulse tried is not the one foreseen, N s.
+    pub(super) missed: Local,
 }
 
 impl Contact {
-    /// Touches nothing.
-    pub(super) const NONE: Self = Self {
-        body: Body::Frame(0),
-        at: DVec3::ZERO,
-        normal: DVec3::Z,
-        push: 0.0,
-        slope: 0.0,
-        grip: Grip { hold: DVec3::ZERO, stick: DMat3::ZERO },
-        friction: 0.0,
-        weight: 1.0,
-        held: false,
-        velocity: DVec3::ZERO,
-        step: DVec3::ZERO,
-        matrix: DMat3::ZERO,
-    };
-
-    /// `weight`, 0 to 1, is the share of the law that this contact is of.
+    /// `weight`, 0 to 1, is the share of the law that this contact is of; `at` is from the front frame's
+    /// origin.
     pub(super) fn new(
         law: &ContactLaw,
         (body, at, normal): (Body, DVec3, DVec3),
@@ -109,88 +116,169 @@ impl Contact {
         dt_s: f64,
     ) -> Self {
         let stiffness = law.stiffness_n_m * dt_s * weight;
+        let axes = [normal, grip.along[0], grip.along[1]];
+        let none = Made { velocity_m_s: [0.0; 3], impulse: [0.0; 3], hold: Hold::Open };
         Self {
             body,
-            at,
-            normal,
+            axes,
+            wrench: axes.map(|axis| wrench_at(axis, at)),
             push: stiffness * depth_m,
             slope: stiffness * dt_s + law.damping_n_s_m * dt_s * weight,
-            grip: Grip { hold: grip.hold * weight, stick: grip.stick * weight },
+            hold: grip.hold.map(|hold| hold * weight),
+            stick: grip.stick.map(|stick| stick * weight),
             friction: law.friction,
             weight,
-            ..Self::NONE
+            held: false,
+            now: none,
+            next: none,
+            step: [0.0; 3],
+            taken: [0.0; 3],
+            matrix: [[0.0; 3]; 3],
+            derived: Hold::Open,
+            missed: [0.0; 3],
         }
     }
 
-    /// Normal impulse at a velocity of the point, N s; none where negative.
+    /// What it makes at a velocity of its point.
     #[inline]
-    fn normal_impulse(&self, velocity: DVec3) -> f64 {
-        self.push - self.slope * self.normal.dot(velocity)
-    }
-
-    /// Sideways impulse that the grip would make, and the largest that friction carries, N s.
-    #[inline]
-    fn sideways(&self, velocity: DVec3, normal: f64) -> (DVec3, f64) {
-        (self.grip.hold + self.grip.stick * velocity, self.friction * normal)
-    }
-
-    /// The impulse on the body at a velocity of its point, N s.
-    #[inline]
-    pub(super) fn impulse(&self, velocity: DVec3) -> DVec3 {
-        let normal = self.normal_impulse(velocity);
+    fn made(&self, velocity_m_s: Local) -> Made {
+        let [out, v1, v2] = velocity_m_s;
+        let normal = self.push - self.slope * out;
         if normal <= 0.0 {
-            return DVec3::ZERO;
+            return Made { velocity_m_s, impulse: [0.0; 3], hold: Hold::Open };
         }
-        let (grip, most) = self.sideways(velocity, normal);
-        let size = grip.length();
-        let share = if size > most && !self.held { most / size } else { 1.0 };
-        self.normal * normal - grip * share
+        let grip = [self.hold[0] + self.stick[0] * v1, self.hold[1] + self.stick[1] * v2];
+        let (size2, most) = (grip[0] * grip[0] + grip[1] * grip[1], self.friction * normal);
+        if size2 <= most * most || self.held {
+            return Made {
+                velocity_m_s,
+                impulse: [normal, -grip[0], -grip[1]],
+                hold: Hold::Sticks,
+            };
+        }
+        let share = most / size2.sqrt();
+        let impulse = [normal, -grip[0] * share, -grip[1] * share];
+        Made { velocity_m_s, impulse, hold: Hold::Slides }
     }
 
-    /// What it does at the solver's present guess.
-    pub(super) fn hold(&self) -> Hold {
-        let normal = self.normal_impulse(self.velocity);
-        let (grip, most) = self.sideways(self.velocity, normal);
-        if normal <= 0.0 {
-            Hold::Open
-        } else if grip.length() <= most {
-            Hold::Sticks
-        } else {
-            Hold::Slides
-        }
-    }
-
-    /// Minus the derivative of [`Self::impulse`], kg. With `coupled` false, sliding friction is
-    /// taken as if it did not follow the normal force.
+    /// Minus the derivative of its impulse at the present guess by columns, kg. With `coupled` false,
+    /// sliding friction is taken as if it did not follow the normal force.
     #[inline]
-    pub(super) fn slope(&self, velocity: DVec3, coupled: bool) -> DMat3 {
-        let normal = self.normal_impulse(velocity);
-        if normal <= 0.0 {
-            return DMat3::ZERO;
+    fn derivative(&self, coupled: bool) -> [Local; 3] {
+        let [k1, k2] = self.stick;
+        match self.now.hold {
+            Hold::Open => [[0.0; 3]; 3],
+            Hold::Sticks => [[self.slope, 0.0, 0.0], [0.0, k1, 0.0], [0.0, 0.0, k2]],
+            Hold::Slides => {
+                let [_, v1, v2] = self.now.velocity_m_s;
+                let (g1, g2) = (self.hold[0] + k1 * v1, self.hold[1] + k2 * v2);
+                let per_size = 1.0 / (g1 * g1 + g2 * g2).sqrt();
+                let (e1, e2) = (g1 * per_size, g2 * per_size);
+                let share = self.friction * self.now.impulse[0] * per_size;
+                let follows = if coupled { -self.friction * self.slope } else { 0.0 };
+                [
+                    [self.slope, follows * e1, follows * e2],
+                    [0.0, share * e2 * e2 * k1, -share * e1 * e2 * k1],
+                    [0.0, -share * e1 * e2 * k2, share * e1 * e1 * k2],
+                ]
+            }
         }
-        let along_normal = outer(self.normal, self.normal * self.slope);
-        let (grip, most) = self.sideways(velocity, normal);
-        let size = grip.length();
-        if size <= most || self.held {
-            return along_normal + self.grip.stick;
-        }
-        let direction = grip / size;
-        let along = self.grip.stick.transpose() * direction;
-        let turning = (self.grip.stick - outer(direction, along)) * (most / size);
-        if !coupled {
-            return along_normal + turning;
-        }
-        along_normal + turning - outer(direction, self.normal * (self.friction * self.slope))
     }
-}
 
-#[inline]
-pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+    /// Velocity of its point on a body with this twist.
+    #[inline]
+    fn velocity_on(&self, twist: &Spatial) -> Local {
+        let [out, one, two] = &self.wrench;
+        [dot(out, twist), dot(one, twist), dot(two, twist)]
+    }
+
+    /// Takes the body's twist as the present guess.
+    #[inline]
+    pub(super) fn guess(&mut self, twist: &Spatial) {
+        self.now = self.made(self.velocity_on(twist));
+    }
+
+    /// Takes the derivative at the present guess; false if it is what it was.
+    #[inline]
+    pub(super) fn derive(&mut self, coupled: bool) -> bool {
+        let before = self.matrix;
+        self.matrix = self.derivative(coupled);
+        self.derived = self.now.hold;
+        self.matrix != before
+    }
+
+    /// Whether it does what it did where the derivative was taken.
+    pub(super) fn holds_as_derived(&self) -> bool {
+        self.derived == self.now.hold
+    }
+
+    /// Takes what the solver would add to the body's twist.
+    #[inline]
+    pub(super) fn set_step(&mut self, twist: &Spatial) {
+        self.step = self.velocity_on(twist);
+        let ([a, b, c], [x, y, z]) = (&self.matrix, self.step);
+        self.taken = core::array::from_fn(|i| a[i] * x + b[i] * y + c[i] * z);
+    }
+
+    /// Looks at `share` of the step; how much what was missed there works along it.
+    #[inline]
+    pub(super) fn try_share(&mut self, share: f64) -> f64 {
+        self.next =
+            self.made(core::array::from_fn(|i| self.now.velocity_m_s[i] + share * self.step[i]));
+        let mut work = 0.0;
+        for i in 0..3 {
+            self.missed[i] = self.now.impulse[i] - share * self.taken[i] - self.next.impulse[i];
+            work += self.step[i] * self.missed[i];
+        }
+        work
+    }
+
+    /// Makes what was tried the present guess.
+    #[inline]
+    pub(super) const fn take(&mut self) {
+        self.now = self.next;
+    }
+
+    /// The wrench of an impulse along its axes.
+    #[inline]
+    pub(super) fn wrench_of(&self, impulse: &Local) -> Spatial {
+        let mut wrench = ZERO;
+        for (axis, along) in self.wrench.iter().zip(impulse) {
+            add_scaled(&mut wrench, axis, *along);
+        }
+        wrench
+    }
+
+    /// Adds the derivative to the matrix of the body.
+    #[inline]
+    pub(super) fn add_to(&self, body: &mut Spatial6) {
+        if self.now.hold == Hold::Open {
+            return;
+        }
+        let [[out, one, two], [_, b1, b2], [_, c1, c2]] = self.matrix;
+        let [normal, first, second] = &self.wrench;
+        // Only the normal velocity changes the normal impulse.
+        let along =
+            |a: f64, b: f64| -> Spatial { core::array::from_fn(|i| a * first[i] + b * second[i]) };
+        let mut columns = [along(one, two), along(b1, b2), along(c1, c2)];
+        add_scaled(&mut columns[0], normal, out);
+        for (j, out) in body.iter_mut().enumerate() {
+            for (column, wrench) in columns.iter().zip(&self.wrench) {
+                add_scaled(out, column, wrench[j]);
+            }
+        }
+    }
+
+    /// The impulse on the body at the present guess, N s.
+    pub(super) fn impulse(&self) -> DVec3 {
+        let ([out, one, two], [n, a, b]) = (self.axes, self.now.impulse);
+        out * n + one * a + two * b
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::spatial::{ZERO6, apply, velocity_at};
     use super::*;
 
     const LAW: ContactLaw =
@@ -199,43 +287,72 @@ mod tests {
 
     fn contact(depth_m: f64) -> Contact {
         let normal = DVec3::new(0.1, -0.2, 1.0).normalize();
-        let place = (Body::Wheel(0), DVec3::ZERO, normal);
-        Contact::new(&LAW, place, &Grip::rigid(normal, DT_S), depth_m, 1.0, DT_S)
+        let (one, two) = normal.any_orthonormal_pair();
+        let grip = Grip { stick: [8e5, 5e5], ..Grip::rigid([one, two], DT_S) };
+        Contact::new(&LAW, (Body::Wheel(0), DVec3::ZERO, normal), &grip, depth_m, 1.0, DT_S)
     }
 
     #[test]
     fn a_still_point_feels_its_spring() {
-        let c = contact(0.004);
-        let impulse = c.impulse(DVec3::ZERO);
-        assert!((impulse.length() - 8.0e6 * 0.004 * DT_S).abs() < 1e-9);
-        assert_eq!(contact(-0.004).impulse(DVec3::ZERO), DVec3::ZERO);
+        let made = contact(0.004).made([0.0; 3]);
+        assert!((made.impulse[0] - 8.0e6 * 0.004 * DT_S).abs() < 1e-9);
+        assert_eq!(contact(-0.004).made([0.0; 3]).impulse, [0.0; 3]);
     }
 
     #[test]
     fn friction_opposes_the_slip_and_stays_in_its_cone() {
         let c = contact(0.004);
         for slip in [1e-7, 1e-4, 1e-2, 1.0] {
-            let along = c.normal.any_orthonormal_vector();
-            let impulse = c.impulse(along * slip);
-            let (normal, sideways) = (impulse.dot(c.normal), impulse.dot(along));
+            let [normal, sideways, _] = c.made([0.0, slip, 0.0]).impulse;
             assert!(sideways < 0.0);
             assert!(-sideways <= LAW.friction * normal * (1.0 + 1e-12));
         }
     }
 
     #[test]
-    fn the_slope_is_the_derivative() {
-        let c = contact(0.004);
-        for velocity in
-            [DVec3::new(1e-5, -2e-6, 0.01), DVec3::new(0.3, 0.1, -0.1), DVec3::new(0.0, 0.0, 5.0)]
-        {
-            let slope = c.slope(velocity, true);
-            for axis in DVec3::AXES {
+    fn the_derivative_is_that_of_the_impulse() {
+        let mut c = contact(0.004);
+        for velocity in [[1e-5, -2e-6, 3e-6], [0.03, 0.1, -0.2], [5.0, 0.0, 0.0]] {
+            c.now = c.made(velocity);
+            let columns = c.derivative(true);
+            for (axis, column) in columns.iter().enumerate() {
                 let d = 1e-9;
-                let change = c.impulse(velocity + axis * d) - c.impulse(velocity - axis * d);
-                let want = -change / (2.0 * d);
-                assert!((slope * axis - want).length() < 1e-4 * (1.0 + want.length()));
+                let impulse = |d: f64| {
+                    let mut at = velocity;
+                    at[axis] += d;
+                    c.made(at).impulse
+                };
+                let (up, down) = (impulse(d), impulse(-d));
+                for i in 0..3 {
+                    let want = (down[i] - up[i]) / (2.0 * d);
+                    assert!((column[i] - want).abs() < 1e-4 * (1.0 + want.abs()), "{velocity:?}");
+                }
             }
+        }
+    }
+
+    #[test]
+    fn the_matrix_of_a_body_acts_on_the_velocity_of_its_point() {
+        let at = DVec3::new(0.3, -1.2, 0.8);
+        let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
+        let place = |c: Contact| (c.body, at, c.axes[0]);
+        let held = contact(0.004);
+        let grip = Grip { stick: [8e5, 5e5], ..Grip::rigid([held.axes[1], held.axes[2]], DT_S) };
+        let mut c = Contact::new(&LAW, place(held), &grip, 0.4, 1.0, DT_S);
+        c.guess(&twist);
+        assert_eq!(c.now.hold, Hold::Slides);
+        assert!(c.derive(true) && !c.derive(true));
+        let velocity = velocity_at(&twist, at);
+        for (axis, along) in c.axes.iter().zip(c.now.velocity_m_s) {
+            assert!((axis.dot(velocity) - along).abs() < 1e-12);
+        }
+        c.set_step(&twist);
+        let mut m = ZERO6;
+        c.add_to(&mut m);
+        let [n, a, b] = [0, 1, 2].map(|i| c.axes[i] * c.taken[i]);
+        let want = wrench_at(n + a + b, at);
+        for (got, want) in apply(&m, &twist).iter().zip(want) {
+            assert!((got - want).abs() < 1e-9 * want.abs().max(1.0), "{got}, not {want}");
         }
     }
 }

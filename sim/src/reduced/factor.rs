@@ -13,19 +13,6 @@ use super::spatial::{
 };
 use super::tree::Tree;
 
-/// The matrix to factor: the bodies' inertias, and what stiffens them within a step.
-#[derive(Debug)]
-pub(super) struct Matrix<'a> {
-    /// On each hinge's own rate: implicit springs, dampers, brakes, times the step, kg m². The first
-    /// six stay zero.
-    pub(super) hinge: Generalized,
-    /// On the bodies' twists: inertias and contacts.
-    pub(super) frame: [Spatial6; 3],
-    pub(super) wheel: [Spatial6; 6],
-    /// Nothing touches an arm.
-    pub(super) arm: &'a [Spatial6; 6],
-}
-
 /// A hinge that was eliminated.
 #[derive(Clone, Copy, Debug)]
 struct Pivot {
@@ -35,9 +22,13 @@ struct Pivot {
 }
 
 /// The factors.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Factors {
     pivot: [Pivot; FREEDOMS - 6],
+    /// What each wheel with its arm is to its frame.
+    handed: [Spatial6; 6],
+    /// What stiffens each wheel's own hinge; nothing where it was not taken yet.
+    stiffening: [Option<f64>; 6],
     root: Spatial6,
 }
 
@@ -45,28 +36,60 @@ impl Factors {
     /// Nothing factored yet.
     pub(super) const fn new() -> Self {
         let none = Pivot { column: ZERO, row: ZERO, inverse: 0.0 };
-        Self { pivot: [none; FREEDOMS - 6], root: ZERO6 }
+        Self { pivot: [none; FREEDOMS - 6], handed: [ZERO6; 6], stiffening: [None; 6], root: ZERO6 }
     }
 
-    /// Factors a matrix, which is used up. `None` if it has no positive pivots, which friction that
-    /// jams an arm can do.
-    pub(super) fn factor(&mut self, pose: &Pose, matrix: &mut Matrix<'_>) -> Option<()> {
-        let Matrix { hinge, frame, wheel, arm } = matrix;
-        let pivot = &mut self.pivot;
-        for i in 0..6 {
-            let (body, k) = (&mut wheel[i], WHEELS + i);
-            pivot[k - 6] = eliminate(body, &pose.arm[i].wheel_axis, hinge[k])?;
-            add6(body, &arm[i]);
-            let k = ARMS + i;
-            pivot[k - 6] = eliminate(body, &pose.arm[i].arm_axis, hinge[k])?;
-            add6(&mut frame[Tree::frame_of(i)], body);
+    /// What stiffens the hinge of wheel `i` in these factors, kg m²; `None` where it was not taken yet.
+    pub(super) const fn wheel_stiffening(&self, i: usize) -> Option<f64> {
+        self.stiffening[i]
+    }
+
+    /// Takes nothing of these factors for the next.
+    pub(super) const fn forget(&mut self) {
+        self.stiffening = [None; 6];
+    }
+
+    /// Eliminates wheel `i` and its arm: the matrix of both on their twist, contacts among it, and those of
+    /// the freedoms' own rates (implicit springs, dampers, brakes, times the step, kg m²; the first six
+    /// have none). `None` if there is no positive pivot, which friction that jams an arm can do.
+    ///
+    /// `both` writes that matrix; `arm_column` is the arm's alone times the wheel's twist against it.
+    #[inline]
+    pub(super) fn take_wheel(
+        &mut self,
+        pose: &Pose,
+        i: usize,
+        both: impl FnOnce(&mut Spatial6),
+        arm_column: &Spatial,
+        hinge: &Generalized,
+    ) -> Option<()> {
+        self.stiffening[i] = None;
+        let (body, at) = (&mut self.handed[i], &pose.arm[i]);
+        both(body);
+        self.pivot[WHEELS + i - 6] =
+            eliminate(body, &at.wheel_axis, hinge[WHEELS + i], arm_column)?;
+        self.pivot[ARMS + i - 6] = eliminate(body, &at.arm_axis, hinge[ARMS + i], &ZERO)?;
+        self.stiffening[i] = Some(hinge[WHEELS + i]);
+        Some(())
+    }
+
+    /// Eliminates the frames, given their own matrices, after all wheels.
+    pub(super) fn take_frames(
+        &mut self,
+        pose: &Pose,
+        mut frame: [Spatial6; 3],
+        hinge: &Generalized,
+    ) -> Option<()> {
+        for (i, handed) in self.handed.iter().enumerate() {
+            add6(&mut frame[Tree::frame_of(i)], handed);
         }
+        let pivot = &mut self.pivot;
         for i in (0..2).rev() {
             let k = JOINTS + i;
             let (ahead, behind) = frame.split_at_mut(i + 1);
-            pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k])?;
+            pivot[k - 6] = eliminate(&mut behind[0], &pose.joint_axis[i], hinge[k], &ZERO)?;
             if let (0, Some(axis)) = (i, &pose.roll_axis) {
-                pivot[ROLL - 6] = eliminate(&mut behind[0], axis, hinge[ROLL])?;
+                pivot[ROLL - 6] = eliminate(&mut behind[0], axis, hinge[ROLL], &ZERO)?;
             }
             add6(&mut ahead[i], &behind[0]);
         }
@@ -131,10 +154,21 @@ impl Factors {
     }
 }
 
-/// Takes a hinge out of a body's matrix; what is left is what its parent feels.
-fn eliminate(body: &mut Spatial6, axis: &Spatial, stiffening: f64) -> Option<Pivot> {
-    let column = apply(body, axis);
-    let row = apply_transposed(body, axis);
+/// Takes a hinge out of a body's matrix; what is left is what its parent feels. `apart` is how much of
+/// the matrix does not move with the hinge, times its axis.
+#[inline]
+fn eliminate(
+    body: &mut Spatial6,
+    axis: &Spatial,
+    stiffening: f64,
+    apart: &Spatial,
+) -> Option<Pivot> {
+    let mut column = apply(body, axis);
+    let mut row = apply_transposed(body, axis);
+    for i in 0..6 {
+        column[i] -= apart[i];
+        row[i] -= apart[i];
+    }
     let pivot = dot(axis, &column) + stiffening;
     if pivot.is_nan() || pivot <= 0.0 {
         return None;

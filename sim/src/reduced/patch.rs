@@ -5,9 +5,9 @@
 //! carries it. The law is [`crate::Tyre`]'s; here the deflection and its rate at the step's end are
 //! functions of the velocity that the solver looks for. A rigid wheel has no bristles and sticks.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use super::contact::{Contact, Grip, outer};
+use super::contact::{Contact, Grip};
 use crate::{Brush, TyrePart};
 
 /// Damping of the bristles as a share of critical with a wheel's mass (assumed).
@@ -78,25 +78,18 @@ impl Patch {
 
     /// The grip of a contact with this normal: k z + c z' with z = kept (z0 + dt v).
     pub(super) fn grip(&self, normal: DVec3) -> Grip {
-        let directions = self.directions(normal);
-        let mut grip = match &self.bristles {
-            None => Grip::rigid(normal, self.dt_s),
-            Some(bristles) => {
-                let mut grip = Grip { hold: DVec3::ZERO, stick: DMat3::ZERO };
-                for (i, along) in directions.into_iter().enumerate() {
-                    // Impulses per deflection and per velocity of it.
-                    let spring = bristles.stiffness_n_m[i] * self.dt_s;
-                    let damper = bristles.damping_n_s_m[i];
-                    let end = (spring + damper) * bristles.kept;
-                    grip.hold += along * ((end - damper) * bristles.start_m[i]);
-                    grip.stick += outer(along, along * (end * self.dt_s));
-                }
-                grip
+        let mut grip = Grip::rigid(self.directions(normal), self.dt_s);
+        if let Some(bristles) = &self.bristles {
+            for i in 0..2 {
+                // Impulses per deflection and per velocity of it.
+                let spring = bristles.stiffness_n_m[i] * self.dt_s;
+                let damper = bristles.damping_n_s_m[i];
+                let end = (spring + damper) * bristles.kept;
+                grip.hold[i] = (end - damper) * bristles.start_m[i];
+                grip.stick[i] = end * self.dt_s;
             }
-        };
-        if self.loose_m_s != 0.0 {
-            grip.hold += grip.stick * directions[0] * self.loose_m_s;
         }
+        grip.hold[0] += grip.stick[0] * self.loose_m_s;
         grip
     }
 
@@ -106,11 +99,10 @@ impl Patch {
         let Some(bristles) = &self.bristles else { return [0.0; 2] };
         let (mut sum_m, mut load_n, mut weight) = ([0.0; 2], 0.0, 0.0);
         for contact in contacts {
-            let own_n = contact.impulse(contact.velocity).dot(contact.normal) / self.dt_s;
+            let own_n = contact.now.impulse[0] / self.dt_s;
             if own_n > 0.0 {
-                let [rolling, axle] = self.directions(contact.normal);
-                let slip_m_s =
-                    [rolling.dot(contact.velocity) + self.loose_m_s, axle.dot(contact.velocity)];
+                let [_, rolling_m_s, axle_m_s] = contact.now.velocity_m_s;
+                let slip_m_s = [rolling_m_s + self.loose_m_s, axle_m_s];
                 for i in 0..2 {
                     let carried_m = bristles.kept * (bristles.start_m[i] + self.dt_s * slip_m_s[i]);
                     sum_m[i] += own_n * carried_m;
@@ -135,6 +127,7 @@ impl Patch {
 #[cfg(test)]
 mod tests {
     use super::super::contact::{Body, ContactLaw};
+    use super::super::spatial::join;
     use super::*;
 
     const LAW: ContactLaw =
@@ -163,7 +156,7 @@ mod tests {
             let contacts = [0.3, 0.7].map(|weight| {
                 let grip = patch.grip(DVec3::Z);
                 let mut contact = Contact::new(&LAW, place, &grip, depth_m, weight, DT_S);
-                contact.velocity = velocity;
+                contact.guess(&join(DVec3::ZERO, velocity));
                 contact
             });
             deflection_m = patch.end_m(contacts.iter());

@@ -2,7 +2,9 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::spatial::{Spatial, Spatial6, ZERO6, add, add_scaled, dot, turn_about, write_rigid};
+use super::spatial::{
+    Spatial, Spatial6, add, add_rigid, add_scaled, apply, dot, turn_about, write_rigid,
+};
 use super::tree::{Arm, Tree};
 
 /// Freedoms: six of the front frame, two joints, six arms, six wheels, and the roll of the middle
@@ -172,33 +174,35 @@ impl ArmPose {
 }
 
 /// Inertias of the parts where they are: about their centres of mass, and spatial.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Inertias {
-    pub(super) about_com: BodyInertias<DMat3>,
-    pub(super) spatial: BodyInertias<Spatial6>,
+    pub(super) about_com: AboutCom,
+    pub(super) spatial: BodyInertias,
 }
 
-/// One inertia a body.
-#[derive(Clone, Debug)]
-pub(super) struct BodyInertias<T> {
-    pub(super) frame: [T; 3],
-    pub(super) arm: [T; 6],
-    pub(super) wheel: [T; 6],
+/// One inertia a body about its centre of mass, kg m².
+#[derive(Clone, Debug, Default)]
+pub(super) struct AboutCom {
+    pub(super) frame: [DMat3; 3],
+    pub(super) arm: [DMat3; 6],
+    pub(super) wheel: [DMat3; 6],
+}
+
+/// Spatial inertias.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BodyInertias {
+    pub(super) frame: [Spatial6; 3],
+    /// Of each arm with its wheel.
+    pub(super) arm: [Spatial6; 6],
+    /// The inertia of each arm alone times the twist of its wheel against it.
+    pub(super) arm_column: [Spatial; 6],
 }
 
 impl Inertias {
-    /// Written in place: a matrix is too large to be handed on.
-    pub(super) fn new(tree: &Tree, pose: &Pose) -> Self {
+    /// Takes those of this pose. Written in place: a matrix is too large to be handed on.
+    pub(super) fn renew(&mut self, tree: &Tree, pose: &Pose) {
         let turned = |turn: &DMat3, inertia: DMat3| *turn * inertia * turn.transpose();
-        let mut out = Self {
-            about_com: BodyInertias {
-                frame: [DMat3::ZERO; 3],
-                arm: [DMat3::ZERO; 6],
-                wheel: [DMat3::ZERO; 6],
-            },
-            spatial: BodyInertias { frame: [ZERO6; 3], arm: [ZERO6; 6], wheel: [ZERO6; 6] },
-        };
-        let (about, spatial) = (&mut out.about_com, &mut out.spatial);
+        let Self { about_com: about, spatial } = self;
         for (i, (part, at)) in tree.frames.iter().zip(&pose.frame).enumerate() {
             about.frame[i] = turned(&at.turn, part.inertia_kg_m2);
             write_rigid(&mut spatial.frame[i], part.mass_kg, at.com, &about.frame[i]);
@@ -206,10 +210,10 @@ impl Inertias {
         for (i, (part, at)) in tree.arms.iter().zip(&pose.arm).enumerate() {
             about.arm[i] = turned(&at.turn, part.inertia_kg_m2);
             write_rigid(&mut spatial.arm[i], part.mass_kg, at.com, &about.arm[i]);
+            spatial.arm_column[i] = apply(&spatial.arm[i], &at.wheel_axis);
             about.wheel[i] = wheel_inertia(part, at.axle);
-            write_rigid(&mut spatial.wheel[i], part.wheel_kg, at.wheel, &about.wheel[i]);
+            add_rigid(&mut spatial.arm[i], part.wheel_kg, at.wheel, &about.wheel[i]);
         }
-        out
     }
 }
 

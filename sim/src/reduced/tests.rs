@@ -1,14 +1,16 @@
 //! The tree's dynamics against what they must equal: sums over bodies, and what is conserved.
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use proptest::prelude::*;
 use xt28_machine::{Machine, PerWheel};
 
 use super::ReducedBodies;
-use super::factor::{Factors, Matrix};
+use super::factor::Factors;
 use super::newton::Convergence;
 use super::pose::{FREEDOMS, Generalized, Inertias, Pose, ROLL, State, WHEELS};
-use super::spatial::{Spatial, add_at_point, angular, apply, dot, linear, velocity_at, wrench_at};
+use super::spatial::{
+    Spatial, Spatial6, ZERO6, angular, apply, dot, linear, velocity_at, wrench_at, write_rigid,
+};
 use super::tree::Tree;
 use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
 use crate::{Effects, HullBall, Parts, RollHinge, Terrain, TyrePart};
@@ -37,18 +39,31 @@ fn bent(seed: f64) -> State {
     }
 }
 
+fn inertias(tree: &Tree, pose: &Pose) -> Inertias {
+    let mut inertias = Inertias::default();
+    inertias.renew(tree, pose);
+    inertias
+}
+
 /// Twists of all bodies under generalised velocities, with each body's spatial inertia applied.
 fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Spatial, Spatial)> {
     let pose = Pose::new(tree, state);
-    let inertias = Inertias::new(tree, &pose).spatial;
+    let about = inertias(tree, &pose).about_com;
+    let of = |mass_kg: f64, com: DVec3, about: &DMat3, twist: &Spatial| {
+        let mut inertia = ZERO6;
+        write_rigid(&mut inertia, mass_kg, com, about);
+        (*twist, apply(&inertia, twist))
+    };
     let frames = pose.frame_twists(rate);
-    let mut out: Vec<(Spatial, Spatial)> =
-        (0..3).map(|i| (frames[i], apply(&inertias.frame[i], &frames[i]))).collect();
+    let mut out: Vec<(Spatial, Spatial)> = (0..3)
+        .map(|i| of(tree.frames[i].mass_kg, pose.frame[i].com, &about.frame[i], &frames[i]))
+        .collect();
     for i in 0..6 {
         let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], rate);
         let wheel = pose.wheel_twist(i, &arm, rate);
-        out.push((arm, apply(&inertias.arm[i], &arm)));
-        out.push((wheel, apply(&inertias.wheel[i], &wheel)));
+        let (part, at) = (&tree.arms[i], &pose.arm[i]);
+        out.push(of(part.mass_kg, at.com, &about.arm[i], &arm));
+        out.push(of(part.wheel_kg, at.wheel, &about.wheel[i], &wheel));
     }
     out
 }
@@ -67,6 +82,22 @@ fn mass_matrix(tree: &Tree, state: &State) -> Vec<Generalized> {
     (0..FREEDOMS).map(|k| core::array::from_fn(|j| entry(j, k))).collect()
 }
 
+/// Adds a 3 x 3 matrix that acts on the velocity of the point `at`: m += X^T g X.
+fn add_at_point(m: &mut Spatial6, g: &DMat3, at: DVec3) {
+    let x = wrench_at(g.x_axis, at);
+    let y = wrench_at(g.y_axis, at);
+    let z = wrench_at(g.z_axis, at);
+    // A unit turn about an axis moves the point along the other two.
+    for i in 0..6 {
+        m[0][i] += z[i] * at.y - y[i] * at.z;
+        m[1][i] += x[i] * at.z - z[i] * at.x;
+        m[2][i] += y[i] * at.x - x[i] * at.y;
+        m[3][i] += x[i];
+        m[4][i] += y[i];
+        m[5][i] += z[i];
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
@@ -80,36 +111,36 @@ proptest! {
         let state = bent(seed);
         let (pose, inertias) = {
             let pose = Pose::new(&tree, &state);
-            let inertias = Inertias::new(&tree, &pose).spatial;
+            let inertias = inertias(&tree, &pose).spatial;
             (pose, inertias)
         };
-        let mut with = Matrix {
-            hinge: [0.0; FREEDOMS],
-            frame: inertias.frame,
-            wheel: inertias.wheel,
-            arm: &inertias.arm,
-        };
-        for k in 6..FREEDOMS {
-            with.hinge[k] = 100.0 * (1.0 + (seed * k as f64).sin());
-        }
+        let (mut frame, mut both) = (inertias.frame, inertias.arm);
+        let hinge: Generalized = core::array::from_fn(|k| {
+            if k < 6 { 0.0 } else { 100.0 * (1.0 + (seed * k as f64).sin()) }
+        });
         // A contact under one wheel and one under a frame; sliding makes it lopsided.
-        let g = glam::DMat3::from_cols_array(&[9e2, 0.0, 0.0, 0.0, 4e2, 0.0,
+        let g = DMat3::from_cols_array(&[9e2, 0.0, 0.0, 0.0, 4e2, 0.0,
             if sliding { -3e2 } else { 0.0 }, 0.0, 7e2]);
         let at = pose.arm[3].wheel - DVec3::Z * 0.7;
-        add_at_point(&mut with.wheel[3], &g, at);
-        add_at_point(&mut with.frame[1], &g, pose.frame[1].com);
+        add_at_point(&mut both[3], &g, at);
+        add_at_point(&mut frame[1], &g, pose.frame[1].com);
 
         let mut right: Generalized = core::array::from_fn(|k| (seed + k as f64).cos());
         if !rolls {
             right[ROLL] = 0.0;
         }
         let mut factors = Factors::new();
-        prop_assert!(factors.factor(&pose, &mut with).is_some());
+        for (i, both) in both.iter().enumerate() {
+            let column = &inertias.arm_column[i];
+            let taken = factors.take_wheel(&pose, i, |out| *out = *both, column, &hinge);
+            prop_assert!(taken.is_some());
+        }
+        prop_assert!(factors.take_frames(&pose, frame, &hinge).is_some());
         let x = factors.solve(&pose, &right);
 
         let frames = pose.frame_twists(&x);
-        let wheel = pose.wheel_twist(3, &pose.arm_twist(3, &frames[1], &x), &x);
-        let on_wheel = wrench_at(g * velocity_at(&wheel, at), at);
+        let twist = pose.wheel_twist(3, &pose.arm_twist(3, &frames[1], &x), &x);
+        let on_wheel = wrench_at(g * velocity_at(&twist, at), at);
         let com = pose.frame[1].com;
         let mut wrenches = [[0.0; 6]; 6];
         wrenches[3] = on_wheel;
@@ -118,7 +149,7 @@ proptest! {
         let matrix = mass_matrix(&tree, &state);
         for k in 0..FREEDOMS {
             let inertial: f64 = (0..FREEDOMS).map(|j| matrix[j][k] * x[j]).sum();
-            let left = inertial + with.hinge[k] * x[k] + contacts[k];
+            let left = inertial + hinge[k] * x[k] + contacts[k];
             prop_assert!((left - right[k]).abs() < 1e-9, "{k}: {left} is not {}", right[k]);
         }
     }

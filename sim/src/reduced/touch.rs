@@ -124,8 +124,10 @@ impl Search {
             let at = touch.point - origin - touch.normal * (0.5 * depth_m);
             if found.len() < CONTACTS_MAX {
                 let place = (ball.body, at, touch.normal);
-                let grip =
-                    patch.map_or_else(|| Grip::rigid(touch.normal, dt_s), |p| p.grip(touch.normal));
+                let grip = patch.map_or_else(
+                    || Grip::rigid(touch.normal.any_orthonormal_pair().into(), dt_s),
+                    |patch| patch.grip(touch.normal),
+                );
                 let mut contact = Contact::new(law, place, &grip, depth_m, touch.weight, dt_s);
                 contact.held = matches!(ball.body, Body::Wheel(i) if self.stuck[i]);
                 found.push(contact);

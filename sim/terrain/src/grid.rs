@@ -109,6 +109,15 @@ impl Grid {
         [index(x_m, self.first[0]), index(y_m, self.first[1])]
     }
 
+    /// Index of the height of point `first` if the grid has it and `points` from there on along x and y.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap)]
+    pub(crate) fn inside(&self, first: [i64; 2], points: usize) -> Option<usize> {
+        let [column, row] = first;
+        let within = |first: i64, count: usize| first >= 0 && first + points as i64 <= count as i64;
+        (within(column, self.columns) && within(row, self.rows))
+            .then(|| row as usize * self.columns + column as usize)
+    }
+
     /// The bounds of a block of cells.
     pub(crate) fn block(&self, column: usize, row: usize) -> &Block {
         &self.blocks[row * count(self.columns) + column]

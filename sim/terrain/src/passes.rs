@@ -8,6 +8,7 @@
 //! moves no further than the centre does (the stability of persistence: Cohen-Steiner, Edelsbrunner
 //! and Harer, Stability of Persistence Diagrams, 2007).
 
+use crate::grid::SPACING_M;
 use crate::{Grid, Nearest};
 
 /// Cells along a side of the window that a flood stays in: 1.6 m, more than any ball of the vehicle.
@@ -67,8 +68,11 @@ struct Flood<'a> {
     grid: &'a Grid,
     centre_m: [f64; 3],
     limit_m2: f64,
-    /// The window's first cell.
+    /// The window's first cell, and where its low corner lies from the centre in plan, m.
     first: [i64; 2],
+    first_m: [f64; 2],
+    /// Index of the height of that corner, where the grid has the whole window.
+    inside: Option<usize>,
     /// Triangles in the window that are wet or about to be, a bit each.
     seen: [u64; 2 * WINDOW as usize * WINDOW as usize / 64],
     open: [Shore; OPEN_MAX],
@@ -79,11 +83,15 @@ impl<'a> Flood<'a> {
     fn new(grid: &'a Grid, centre_m: [f64; 3], source: &Nearest, limit_m2: f64) -> Self {
         let [x, y, _] = source.point_m;
         let nowhere = Face { column: 0, row: 0, upper: false };
+        let first = grid.cell(x, y).map(|cell| cell - i64::from(WINDOW / 2));
+        let [x0, y0] = grid.plan_m(first[0], first[1]);
         let mut flood = Self {
             grid,
             centre_m,
             limit_m2,
-            first: grid.cell(x, y).map(|cell| cell - i64::from(WINDOW / 2)),
+            first,
+            first_m: [x0 - centre_m[0], y0 - centre_m[1]],
+            inside: grid.inside(first, WINDOW as usize + 2),
             seen: [0; 2 * WINDOW as usize * WINDOW as usize / 64],
             open: [Shore { pass_m2: 0.0, beyond: nowhere }; OPEN_MAX],
             count: 1,
@@ -163,11 +171,20 @@ impl<'a> Flood<'a> {
     }
 
     /// A corner from the centre, m.
+    #[inline]
+    #[allow(clippy::cast_sign_loss)]
     fn corner(&self, column: i16, row: i16) -> [f64; 3] {
-        let (column, row) = (self.first[0] + i64::from(column), self.first[1] + i64::from(row));
-        let [x, y] = self.grid.plan_m(column, row);
-        let z = f64::from(self.grid.height_beyond_m(column, row));
-        [x - self.centre_m[0], y - self.centre_m[1], z - self.centre_m[2]]
+        let height_m = match self.inside {
+            Some(low) => {
+                self.grid.heights_m()[low + row as usize * self.grid.size()[0] + column as usize]
+            }
+            None => {
+                let [c, r] = self.first;
+                self.grid.height_beyond_m(c + i64::from(column), r + i64::from(row))
+            }
+        };
+        let plan_m = |axis: usize, steps: i16| self.first_m[axis] + f64::from(steps) * SPACING_M;
+        [plan_m(0, column), plan_m(1, row), f64::from(height_m) - self.centre_m[2]]
     }
 }
 

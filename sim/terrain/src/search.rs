@@ -145,11 +145,15 @@ impl<'a, K: FnMut(Nearest)> Search<'a, K> {
             // Over the plane, and the square of its normal (-a, -b, 1); the foot is
             // (a, b, -1) over / normal2.
             let (over, normal2) = (a * x + b * y - corner, a * a + b * b + 1.0);
-            let (u, v) = (a * over - x * normal2, b * over - y * normal2);
             let (slack, side) = (SLACK_M2 * normal2, SPACING_M * normal2);
-            let cell = -slack..=side + slack;
+            let (from, to) = (-slack, side + slack);
+            let u = a * over - x * normal2;
+            if !(from <= u && u <= to) {
+                return;
+            }
+            let v = b * over - y * normal2;
             let half = if low { v <= u + slack } else { u <= v + slack };
-            if over > 0.0 && half && cell.contains(&u) && cell.contains(&v) {
+            if over > 0.0 && half && from <= v && v <= to {
                 let share = over / normal2;
                 self.keep([a * share, b * share, -share]);
             }
@@ -237,8 +241,11 @@ fn feet_m(rise: [f32; 2], below_m: [f64; 2]) -> [f64; 2] {
 /// is their product.
 #[inline]
 fn on_edge(corner: [f64; 3], along: [f64; 3], grows: f64) -> Option<[f64; 3]> {
+    if grows > 0.0 {
+        return None;
+    }
     let length_m2 = along.iter().map(|m| m * m).sum();
-    if !(-grows >= 0.0 && -grows <= length_m2) {
+    if -grows > length_m2 {
         return None;
     }
     let share = -grows / length_m2;

@@ -202,12 +202,8 @@ impl Generator {
                 vec![one(Signal::ArmOpening, error)]
             }
             Self::Joint(j) => {
-                let e = joints::joint_errors(s, machine, effects, j);
-                vec![
-                    one(Signal::JointAngle, e.slow_rad),
-                    one(Signal::JointFast, e.fast_rad),
-                    one(Signal::JointRelief, e.relief_rad_s),
-                ]
+                let errors = joints::joint_errors(s, machine, effects, j).by_signal();
+                errors.map(|(signal, raw)| one(signal, raw)).to_vec()
             }
             Self::SteerEcu(j) => {
                 let error = controllers::steer_opening_error(s, machine, effects, j);

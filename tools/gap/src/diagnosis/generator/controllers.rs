@@ -3,7 +3,7 @@
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::current_step::{STEER_STEP, within_step};
+use super::current_step::{STEER_STEP, middle_of_cut};
 use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -15,7 +15,8 @@ const HALVINGS: usize = 9;
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint less the one asked for.
 ///
 /// Which of two neighbouring samples the ECU saw is not known: where what it would ask jumps between
-/// them, anything in between is right, as is what shows as the same current, cut off or rounded. `NaN` where the machine is about to start or to stop.
+/// them, anything in between is right. Nor is it known whether a current is rounded to the wire's steps or
+/// cut off: it is taken for what leaves less. `NaN` where the machine is about to start or to stop.
 #[must_use]
 pub(super) fn steer_opening_error(
     signals: &Signals,
@@ -24,7 +25,18 @@ pub(super) fn steer_opening_error(
     joint: usize,
 ) -> Samples {
     let asked = steer_opening_asked(signals, machine, effects, joint);
-    let (logged, end) = (&signals.steer_opening[joint], signals.len.saturating_sub(1));
+    let logged = &signals.steer_opening[joint];
+    let cut: Samples = logged.iter().map(|opening| middle_of_cut(*opening, STEER_STEP)).collect();
+    let [rounded, cut] = [logged, &cut].map(|meant| error_of(signals, machine, [&asked, meant]));
+    let squares = |errors: &Samples| -> f64 {
+        errors.iter().filter(|error| !error.is_nan()).map(|error| error * error).sum()
+    };
+    if squares(&cut) < squares(&rounded) { cut } else { rounded }
+}
+
+/// What is asked less what is meant by the currents logged, sample by sample.
+fn error_of(signals: &Signals, machine: &Machine, [asked, meant]: [&Samples; 2]) -> Samples {
+    let end = signals.len.saturating_sub(1);
     let threshold_m_s = machine.articulation.speed_threshold_m_s;
     let mut error = 0.0;
     (0..signals.len)
@@ -33,8 +45,7 @@ pub(super) fn steer_opening_error(
                 let near = &asked[i.saturating_sub(1)..=(i + 1).min(end)];
                 let least = near.iter().copied().fold(f64::INFINITY, f64::min);
                 let most = near.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let asked = logged[i].clamp(least, most);
-                error = asked - within_step(asked, logged[i], STEER_STEP);
+                error = meant[i].clamp(least, most) - meant[i];
             }
             let speed_m_s = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
             let starts =

@@ -17,6 +17,11 @@ pub(super) fn within_step(asked: f64, opening: f64, step: f64) -> f64 {
     asked.clamp(opening - below, opening + above)
 }
 
+/// The middle of what shows as the current of `opening` where a controller cuts off.
+pub(super) fn middle_of_cut(opening: f64, step: f64) -> f64 {
+    if opening == 0.0 { 0.0 } else { opening + 0.5 * step * opening.signum() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,6 +36,15 @@ mod tests {
                     assert!((kept - asked).abs() < 1e-12, "{asked} as {logged}: {kept}");
                 }
             }
+        }
+    }
+
+    #[test]
+    fn the_middle_of_what_was_cut_off_is_half_a_step_from_either_end() {
+        for asked in (-100..=100).map(|i| 0.003_7 * f64::from(i)) {
+            let logged = (asked / STEER_STEP).trunc() * STEER_STEP;
+            let off = (middle_of_cut(logged, STEER_STEP) - asked).abs();
+            assert!(off <= 0.5 * STEER_STEP + 1e-12 || logged == 0.0, "{asked} as {logged}");
         }
     }
 

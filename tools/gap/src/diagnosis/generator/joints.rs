@@ -27,6 +27,17 @@ pub(super) struct JointErrors {
     pub(super) relief_rad_s: Samples,
 }
 
+impl JointErrors {
+    /// Each with the signal that it is an error of.
+    pub(super) fn by_signal(self) -> [(Signal, Samples); 3] {
+        [
+            (Signal::JointAngle, self.slow_rad),
+            (Signal::JointFast, self.fast_rad),
+            (Signal::JointRelief, self.relief_rad_s),
+        ]
+    }
+}
+
 /// What is slower is told by the scrub of tyres as much as by the valve, s.
 const SLOW_S: f64 = 1.0;
 /// What sound machines leave of the slow and of the fast error while they steer, in floors (nominal logs

@@ -15,7 +15,7 @@ use crate::yardstick;
 pub(crate) struct ThirdMake {
     /// Folder for cases and their answers
     out: PathBuf,
-    /// What is wrong, a case each: NAME[:SCOPE], two joined by +, or `sound`; one of each fault if none
+    /// What is wrong, a case each: `NAME` or `NAME:SCOPE`, two joined by +, or `sound`; one of each fault if none
     causes: Vec<String>,
     /// Seed of the first case; the next has one more
     #[arg(long, default_value_t = 1, value_name = "SEED")]

@@ -27,7 +27,8 @@ fn machines() -> [(Machine, Effects); 2] {
         let more = 1.0 + 0.1 * wheel.index() as f64;
         let w = &mut soft.1.wheels[wheel];
         w.soft_tyre = SoftTyre { stiffness_n_m: 6e5 * more, damping_n_s_m: 1.5e4 };
-        w.slippery_ground = SlipperyGround { friction_factor: 0.5 * more, slip: 0.05 };
+        w.slippery_ground =
+            SlipperyGround { friction_factor: 0.5 * more, slip: 0.05, creep_m_s_n: 5e-6 };
     }
     [(Machine::xt28(), Effects::default()), soft]
 }

@@ -10,6 +10,7 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
+use super::slip_trim::slip_trim_nm;
 use crate::effects::{DelayLine, DriveEffects, Effects, Lag, StandstillDrag};
 
 /// Time in which the engine's speed answers to load, s (assumed).
@@ -20,10 +21,6 @@ const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 const CHARGE_PRESSURE_PA: f64 = 25.0e5;
 /// Pressure above charge at the largest wheel torque, Pa (convention, see above).
 const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
-/// A wheel this much off its circuit's mean is pulled back, rad/s (assumed: 4 rpm).
-const SLIP_FREE_RAD_S: f64 = 4.0 * core::f64::consts::TAU / 60.0;
-/// Torque beyond that, Nm s (assumed).
-const SLIP_GAIN_NMS: f64 = 6_000.0;
 /// How much harder than by the circuit's own gain a held drive draws the wheels to their speed: within
 /// some 30 ms, and stable at steps of 10 ms.
 const HOLDING_GAIN: f64 = 4.0;
@@ -235,9 +232,8 @@ impl Drive {
         }
         for &wheel in &self.circuits[c] {
             let off = input.wheel_speed_rad_s[wheel] - mean_rad_s;
-            let beyond = off - off.clamp(-SLIP_FREE_RAD_S, SLIP_FREE_RAD_S);
             let share = 3.0 * input.motor_displacement[wheel] / motors;
-            torque_nm[wheel] = ((circuit_nm - SLIP_GAIN_NMS * beyond) * share)
+            torque_nm[wheel] = ((circuit_nm - slip_trim_nm(off)) * share)
                 .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
         }
     }

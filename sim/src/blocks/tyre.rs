@@ -33,6 +33,7 @@ pub struct Tyre {
     stiffness_n_m: f64,
     damping_n_s_m: f64,
     friction: f64,
+    creep_m_s_n: f64,
     brush: Brush,
     /// What it moves along the ground's normal and along the ground at the least, kg.
     moves_kg: [f64; 2],
@@ -94,6 +95,7 @@ impl Tyre {
             stiffness_n_m: part.stiffness_n_m,
             damping_n_s_m: part.damping_n_s_m,
             friction: part.friction,
+            creep_m_s_n: part.creep_m_s_n,
             brush: match part.brush {
                 Some(brush) => brush,
                 None => NEAR_RIGID,
@@ -154,9 +156,11 @@ impl Tyre {
         }
         let stiffness = [self.brush.longitudinal_n_m, self.brush.lateral_n_m];
         let limit_n = self.friction * load_n;
-        let renewal = 1.0 + dt_s * input.rolling_m_s.abs() / self.brush.relaxation_m;
+        let rolled = dt_s * input.rolling_m_s.abs() / self.brush.relaxation_m;
+        // What the ground shears by a force is a share of the deflection that makes it.
+        let renewal = stiffness.map(|k| 1.0 + rolled + dt_s * self.creep_m_s_n * k);
         // The step that has just been made carried the bristles along, as far as friction let it.
-        let carried = |i: usize| (state.bristle_m[i] + dt_s * input.slip_m_s[i]) / renewal;
+        let carried = |i: usize| (state.bristle_m[i] + dt_s * input.slip_m_s[i]) / renewal[i];
         let bristle_m = if state.load_n > 0.0 { [carried(0), carried(1)] } else { [0.0; 2] };
         let held_n = (stiffness[0] * bristle_m[0]).hypot(stiffness[1] * bristle_m[1]);
         let share = if held_n > limit_n { limit_n / held_n } else { 1.0 };
@@ -165,7 +169,7 @@ impl Tyre {
             // k z + c z' at the end of the coming step, with the slip that this very force leaves.
             let damping_n_s_m = 2.0 * BRISTLE_DAMPING * (stiffness[i] * self.moves_kg[1]).sqrt();
             let rate_n_m = damping_n_s_m / dt_s;
-            let hold_n_m = (stiffness[i] + rate_n_m) / renewal;
+            let hold_n_m = (stiffness[i] + rate_n_m) / renewal[i];
             let coming_m_s = 2.0 * input.slip_m_s[i] - state.slip_m_s[i];
             let now_n = hold_n_m * (bristle_m[i] + dt_s * coming_m_s) - rate_n_m * bristle_m[i];
             let follows = hold_n_m * dt_s * dt_s / self.moves_kg[1];

@@ -15,6 +15,8 @@ pub struct TyrePart {
     pub friction: f64,
     /// Share of the wheel's rolling that does not become travel: v = (1 - slip) w R.
     pub slip: f64,
+    /// Speed at which the ground shears under the patch for every newton along it, m/s/N.
+    pub creep_m_s_n: f64,
     /// Give of the patch along the ground; `None` for the rigid wheel, which sticks until it slides.
     /// How near to that a solver comes is its own matter.
     pub brush: Option<Brush>,
@@ -53,6 +55,7 @@ impl TyrePart {
             damping_n_s_m: or(soft.damping_n_s_m, neutral.damping_n_s_m, v.tyre_damping_n_s_m),
             friction: machine.wheels.friction * slippery.friction_factor,
             slip: slippery.slip,
+            creep_m_s_n: slippery.creep_m_s_n,
             brush,
         }
     }

@@ -37,9 +37,10 @@ pub(super) struct Grip {
 }
 
 impl Grip {
-    /// A rigid contact's.
-    pub(super) const fn rigid(along: [DVec3; 2], dt_s: f64) -> Self {
-        Self { along, hold: [0.0; 2], stick: [CREEP_N_S_M * dt_s; 2] }
+    /// A rigid contact's, on ground that shears by `creep_m_s_n` for every newton.
+    pub(super) const fn rigid(along: [DVec3; 2], creep_m_s_n: f64, dt_s: f64) -> Self {
+        let stick_n_s_m = CREEP_N_S_M / (1.0 + CREEP_N_S_M * creep_m_s_n);
+        Self { along, hold: [0.0; 2], stick: [stick_n_s_m * dt_s; 2] }
     }
 }
 
@@ -288,7 +289,7 @@ mod tests {
     fn contact(depth_m: f64) -> Contact {
         let normal = DVec3::new(0.1, -0.2, 1.0).normalize();
         let (one, two) = normal.any_orthonormal_pair();
-        let grip = Grip { stick: [8e5, 5e5], ..Grip::rigid([one, two], DT_S) };
+        let grip = Grip { stick: [8e5, 5e5], ..Grip::rigid([one, two], 0.0, DT_S) };
         Contact::new(&LAW, (Body::Wheel(0), DVec3::ZERO, normal), &grip, depth_m, 1.0, DT_S)
     }
 
@@ -337,7 +338,8 @@ mod tests {
         let twist = [0.4, -0.2, 0.9, 1.0, 2.0, -0.5];
         let place = |c: Contact| (c.body, at, c.axes[0]);
         let held = contact(0.004);
-        let grip = Grip { stick: [8e5, 5e5], ..Grip::rigid([held.axes[1], held.axes[2]], DT_S) };
+        let grip =
+            Grip { stick: [8e5, 5e5], ..Grip::rigid([held.axes[1], held.axes[2]], 0.0, DT_S) };
         let mut c = Contact::new(&LAW, place(held), &grip, 0.4, 1.0, DT_S);
         c.guess(&twist);
         assert_eq!(c.now.hold, Hold::Slides);

@@ -18,6 +18,7 @@ const BRISTLE_DAMPING: f64 = 0.5;
 pub(super) struct Patch {
     bristles: Option<Bristles>,
     friction: f64,
+    creep_m_s_n: f64,
     /// Slip of the ground itself along the rolling, m/s: what of the rolling is no travel.
     loose_m_s: f64,
     axle: DVec3,
@@ -29,20 +30,21 @@ pub(super) struct Patch {
 struct Bristles {
     stiffness_n_m: [f64; 2],
     damping_n_s_m: [f64; 2],
-    /// Share of the deflection that rolling leaves over the step.
-    kept: f64,
+    /// Share of the deflection that rolling and shearing ground leave over the step.
+    kept: [f64; 2],
     /// Deflection at the step's start, m.
     start_m: [f64; 2],
 }
 
 impl Bristles {
-    fn new(brush: &Brush, wheel: &Rolling, dt_s: f64) -> Self {
+    fn new(brush: &Brush, creep_m_s_n: f64, wheel: &Rolling, dt_s: f64) -> Self {
         let stiffness_n_m = [brush.longitudinal_n_m, brush.lateral_n_m];
         let damping = |k: f64| 2.0 * BRISTLE_DAMPING * (k * wheel.wheel_kg).sqrt();
+        let rolled = wheel.rim_m_s.abs() * dt_s / brush.relaxation_m;
         Self {
             stiffness_n_m,
             damping_n_s_m: stiffness_n_m.map(damping),
-            kept: 1.0 / (1.0 + wheel.rim_m_s.abs() * dt_s / brush.relaxation_m),
+            kept: stiffness_n_m.map(|k| 1.0 / (1.0 + rolled + dt_s * creep_m_s_n * k)),
             start_m: wheel.bristle_m,
         }
     }
@@ -61,8 +63,9 @@ pub(super) struct Rolling {
 impl Patch {
     pub(super) fn new(tyre: &TyrePart, wheel: &Rolling, dt_s: f64) -> Self {
         Self {
-            bristles: tyre.brush.map(|brush| Bristles::new(&brush, wheel, dt_s)),
+            bristles: tyre.brush.map(|brush| Bristles::new(&brush, tyre.creep_m_s_n, wheel, dt_s)),
             friction: tyre.friction,
+            creep_m_s_n: tyre.creep_m_s_n,
             loose_m_s: tyre.slip * wheel.rim_m_s,
             axle: wheel.axle,
             dt_s,
@@ -78,13 +81,13 @@ impl Patch {
 
     /// The grip of a contact with this normal: k z + c z' with z = kept (z0 + dt v).
     pub(super) fn grip(&self, normal: DVec3) -> Grip {
-        let mut grip = Grip::rigid(self.directions(normal), self.dt_s);
+        let mut grip = Grip::rigid(self.directions(normal), self.creep_m_s_n, self.dt_s);
         if let Some(bristles) = &self.bristles {
             for i in 0..2 {
                 // Impulses per deflection and per velocity of it.
                 let spring = bristles.stiffness_n_m[i] * self.dt_s;
                 let damper = bristles.damping_n_s_m[i];
-                let end = (spring + damper) * bristles.kept;
+                let end = (spring + damper) * bristles.kept[i];
                 grip.hold[i] = (end - damper) * bristles.start_m[i];
                 grip.stick[i] = end * self.dt_s;
             }
@@ -104,7 +107,8 @@ impl Patch {
                 let [_, rolling_m_s, axle_m_s] = contact.now.velocity_m_s;
                 let slip_m_s = [rolling_m_s + self.loose_m_s, axle_m_s];
                 for i in 0..2 {
-                    let carried_m = bristles.kept * (bristles.start_m[i] + self.dt_s * slip_m_s[i]);
+                    let slipped_m = bristles.start_m[i] + self.dt_s * slip_m_s[i];
+                    let carried_m = bristles.kept[i] * slipped_m;
                     sum_m[i] += own_n * carried_m;
                 }
                 load_n += own_n;
@@ -140,6 +144,7 @@ mod tests {
             damping_n_s_m: LAW.damping_n_s_m,
             friction: LAW.friction,
             slip: 0.0,
+            creep_m_s_n: 0.0,
             brush: Some(Brush { longitudinal_n_m: 8.0e5, lateral_n_m: 4.0e5, relaxation_m }),
         }
     }

@@ -125,7 +125,7 @@ impl Search {
             if found.len() < CONTACTS_MAX {
                 let place = (ball.body, at, touch.normal);
                 let grip = patch.map_or_else(
-                    || Grip::rigid(touch.normal.any_orthonormal_pair().into(), dt_s),
+                    || Grip::rigid(touch.normal.any_orthonormal_pair().into(), 0.0, dt_s),
                     |patch| patch.grip(touch.normal),
                 );
                 let mut contact = Contact::new(law, place, &grip, depth_m, touch.weight, dt_s);

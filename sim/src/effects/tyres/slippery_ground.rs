@@ -9,16 +9,18 @@ pub struct SlipperyGround {
     pub friction_factor: f64,
     /// Share of a wheel's rolling that does not become travel, even where friction suffices.
     pub slip: f64,
+    /// Speed at which the ground's top layer shears for every newton that a wheel pushes it with, m/s/N.
+    pub creep_m_s_n: f64,
 }
 
 impl Default for SlipperyGround {
     fn default() -> Self {
-        Self { friction_factor: 1.0, slip: 0.0 }
+        Self { friction_factor: 1.0, slip: 0.0, creep_m_s_n: 0.0 }
     }
 }
 
-/// Two things that slippery ground does: it carries less force sideways and along, and its top
-/// layer gives way under a rolling wheel, v = (1 - slip) w R.
+/// Three things that slippery ground does: it carries less force sideways and along, its top layer gives way
+/// under a rolling wheel, v = (1 - slip) w R, and shears under one that pushes, v = w R - creep F.
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "slippery-ground",
     block: Block::Drive,
@@ -43,6 +45,15 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             // wheels say by more does not slip.
             range: [-0.04, 0.9],
             slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].slippery_ground.slip),
+        },
+        Parameter {
+            name: "creep_m_s_n",
+            neutral: 0.0,
+            tolerance: 1.0e-5,
+            range: [0.0, 1.0e-3],
+            slot: Slot::PerWheel(|effects, wheel| {
+                &mut effects.wheels[wheel].slippery_ground.creep_m_s_n
+            }),
         },
     ],
 };

@@ -16,7 +16,10 @@ mod pump;
 mod rolling;
 mod scrub;
 mod stance;
+#[cfg(test)]
+mod still;
 mod summed;
+mod traction;
 mod travel;
 
 use core::fmt;

@@ -100,6 +100,7 @@ pub struct Signals {
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
     scrubs: OnceLock<Vec<[f64; 2]>>,
+    torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
 }
 
 impl Signals {
@@ -138,7 +139,6 @@ impl Signals {
         let stroke_reading_m = wheels(Channel::Stroke);
         let mut target_stroke_m = wheels(Channel::TargetStroke);
         let is_held = PerWheel::from_fn(|w| hold(&mut target_stroke_m[w], &stroke_reading_m[w]));
-        let smooth = |raw: &Samples| moving_mean(&moving_mean(raw, 0.3), 0.3);
         let smooth_stroke_m = PerWheel::from_fn(|w| {
             smooth(&stroke_reading_m[w]).into_iter().map(|read| read + 0.5 * CUT_M).collect()
         });
@@ -189,6 +189,7 @@ impl Signals {
             instants: OnceLock::new(),
             antenna_leans_m: OnceLock::new(),
             scrubs: OnceLock::new(),
+            torques_nm: OnceLock::new(),
         })
     }
 
@@ -206,6 +207,14 @@ impl Signals {
     /// How the tyres scrub as joints turn. They need of a machine only its axles, joints and radius.
     pub(super) fn scrubs(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
         self.scrubs.get_or_init(first)
+    }
+
+    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds.
+    pub(super) fn torques_nm(
+        &self,
+        first: impl FnOnce() -> [PerWheel<Samples>; 2],
+    ) -> &[PerWheel<Samples>; 2] {
+        self.torques_nm.get_or_init(first)
     }
 
     /// Length of the run, s.
@@ -330,6 +339,12 @@ fn slope_over(samples: &Samples, half: usize) -> Samples {
             }
         })
         .collect()
+}
+
+/// What noise and steps of reading leave: a triangle of 0.6 s around each sample.
+#[must_use]
+pub(super) fn smooth(raw: &Samples) -> Samples {
+    moving_mean(&moving_mean(raw, 0.3), 0.3)
 }
 
 /// Mean over `window_s` around each sample; shorter at the ends.

@@ -179,6 +179,7 @@ fn expected_times_s(effects: &Effects, period_s: f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::still::still;
     use super::*;
 
     fn row(loss: f64, late_s: f64) -> Row {
@@ -190,10 +191,7 @@ mod tests {
 
     /// A run of ten seconds whose commands come `period_s` apart, all but every tenth.
     fn commanded(period_s: f64) -> Signals {
-        let ten = (0..1000).map(|i| (f64::from(i) * 0.01, 0.0));
-        let all = crate::Channel::all().into_iter().map(|c| (c, ten.clone().collect()));
-        let ground = crate::Terrain::Flat;
-        let mut signals = Signals::of_series("made up", &all.collect(), 10.0, ground).unwrap();
+        let mut signals = still(10);
         let frames = (0..(10.0 / period_s) as u32).filter(|k| k % 10 != 3);
         let times_s: Vec<f64> = frames.map(|k| (f64::from(k) + 0.5) * period_s).collect();
         signals.command_times_s = [times_s.clone(), times_s];

@@ -6,10 +6,11 @@
 //! known: it is drawn to what was measured. Between pressure and speed stand mass, grade and rolling.
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::effects::Lag;
+use xt28_sim::effects::{Lag, SlipperyGround};
 use xt28_sim::{Drive, DriveInput, Effects};
 
 use super::grade::Grade;
+use super::rolling::rolling_errors;
 use super::scrub::scrub_drag_nm;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
@@ -106,7 +107,10 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
     let w = &machine.wheels;
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
     let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
-    let inertia_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0 + wheel_kg_m2;
+    let carried_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0;
+    // What the machine travels by, as a speed of its wheels; where the ground holds it is theirs.
+    let slips = effects.wheels.iter().any(|(_, e)| e.slippery_ground != SlipperyGround::default());
+    let travels_m_s = slips.then(|| rolling_errors(signals, machine, effects).ahead_m_s);
     let weight_nm = mass_kg * GRAVITY_M_S2 * w.radius_m / 6.0;
     let added = effects.wheels.iter().map(|(_, e)| e.rolling_resistance.added).sum::<f64>() / 6.0;
     let drag_nm = (w.rolling_resistance + added) * weight_nm;
@@ -124,7 +128,11 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
                 let speeds_up = (mean(to) - mean(from)) / over_s;
                 let [first, second] = circuits_pa(signals, i);
                 let rolls = (mean(i) / TURNS_RAD_S).tanh();
-                let apart = inertia_kg_m2 * speeds_up
+                let travels_up = travels_m_s
+                    .as_ref()
+                    .map_or(speeds_up, |m_s| (m_s[to] - m_s[from]) / w.radius_m / over_s);
+                let apart = carried_kg_m2 * travels_up
+                    + wheel_kg_m2 * speeds_up
                     + drag_nm * rolls
                     + weight_nm * climbs(signals, machine, effects, ground, i)
                     + scrub_nm[i]

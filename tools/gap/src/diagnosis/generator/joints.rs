@@ -105,3 +105,36 @@ fn finer_openings(signals: &Signals, machine: &Machine, joint: usize) -> Samples
     let within = |(asked, logged): (&f64, &f64)| within_step(*asked, *logged, STEER_STEP);
     asked.iter().zip(&signals.steer_opening[joint]).map(within).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::still::still;
+    use super::*;
+
+    /// Largest rate not followed, as a share of its floor, of a front joint that turns right at `share` of the
+    /// rate at which its valve lets it, the valve half open for 4 s.
+    fn not_followed(share: f64) -> f64 {
+        let (machine, effects) = (Machine::xt28(), Effects::default());
+        let mut signals = still(10);
+        let steering = Steering::new(&machine, &effects.steering);
+        let mut state = steering.straight(DT_S);
+        let mut angle_rad = 0.0;
+        for i in 0..signals.len {
+            let opening = if (200..600).contains(&i) { -0.5 } else { 0.0 };
+            let rate_rad_s = share * steering.open(&mut state, opening, DT_S);
+            angle_rad += rate_rad_s * DT_S;
+            signals.steer_opening[0][i] = opening;
+            signals.joint_rate_rad_s[0][i] = rate_rad_s;
+            signals.joint_rad[0][i] = angle_rad;
+        }
+        let errors = joint_errors(&signals, &machine, &effects, 0);
+        let largest = errors.relief_rad_s.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        largest / Signal::JointRelief.floor().sigma
+    }
+
+    #[test]
+    fn a_rate_that_the_relief_valve_would_hide_is_told() {
+        assert!(not_followed(1.0) < 0.1, "{}", not_followed(1.0));
+        assert!(not_followed(0.5) > 3.0, "{}", not_followed(0.5));
+    }
+}

@@ -11,7 +11,8 @@ use super::axles::Axles;
 use super::driving::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
 use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
-use crate::diagnosis::signals::{Samples, Signals};
+use super::traction::Traction;
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
 #[derive(Clone, Debug)]
@@ -34,6 +35,8 @@ const ORDINARY: f64 = 1.75;
 const TRAVELS_RAD_S: f64 = 0.3;
 /// Samples from one look to the next.
 const STRIDE: usize = 5;
+/// Weight of what pushes tell of a speed, beside a wheel that holds.
+const COASTS: f64 = 0.02;
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
 const BENT_RAD: f64 = 0.02;
 
@@ -43,45 +46,54 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     let (axles, linkage) = (Axles::new(machine), machine.linkage());
     let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
+    let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
     let is_plane = Grade::known(s).is_some();
     let mut errors = RollingErrors {
         wheel_rad_s: PerWheel::from_fn(|_| vec![f64::NAN; s.len]),
         ahead_m_s: vec![0.0; s.len],
     };
+    let step_s = STRIDE as f64 * DT_S;
+    let (mut ahead, mut before) = (0.0, None);
     for i in (0..s.len).step_by(STRIDE) {
         let end = (i + STRIDE).min(s.len);
         let joint = [0, 1].map(|j| s.joint_rad[j][i]);
         let pose = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i]));
-        let radius_m = PerWheel::from_fn(|w| {
-            let normal_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose[w]);
-            rolling_radius_m([&nominal, &parts], w, normal_n)
-        });
-        let ground_m_s = ground_speeds(s, effects, &linkage, (&pose, &radius_m), i);
+        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], s.cylinder_load_n[w][i], &pose[w]));
+        let radius_m = PerWheel::from_fn(|w| rolling_radius_m([&nominal, &parts], w, normal_n[w]));
+        let mut traction =
+            Traction::new(s, machine, effects, &normal_n, i, (before.as_ref(), step_s));
+        let ground_m_s = ground_speeds(s, effects, &linkage, (&pose, &radius_m, &traction), i);
         let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
         let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
         let expected = |ahead| expected_speeds(&axles, machine, joint, rate, ahead);
         let (none, one) = (expected(0.0), expected(1.0));
+        let coasts_m_s = ahead + traction.speeds_up_m_s2(mass_kg) * step_s;
         let (mut product, mut square) = (0.0, 0.0);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
-            let by_ahead = one[wheel] - none[wheel];
-            product += by_ahead * (ground_m_s[wheel] - none[wheel]);
-            square += by_ahead * by_ahead;
+            let (by_ahead, holds) = (one[wheel] - none[wheel], traction.holds[wheel]);
+            product += holds * by_ahead * (ground_m_s[wheel] - none[wheel]);
+            square += holds * by_ahead * by_ahead;
+            // Where all slide nothing tells the speed but what they push with.
+            product += (1.0 - holds) * COASTS * coasts_m_s;
+            square += (1.0 - holds) * COASTS;
         }
         if square == 0.0 {
             continue;
         }
-        let ahead = product / square;
+        ahead = product / square;
         errors.ahead_m_s[i..end].fill(ahead);
-        if !is_plane || joint.iter().any(|rad| rad.abs() > BENT_RAD) {
-            continue;
-        }
+        let is_told = is_plane && joint.iter().all(|rad| rad.abs() <= BENT_RAD);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
             let e = &effects.wheels[wheel];
             let error = none[wheel] + ahead * (one[wheel] - none[wheel]) - ground_m_s[wheel];
-            let per_m =
-                e.wheel_speed_scale.factor / (radius_m[wheel] * (1.0 - e.slippery_ground.slip));
-            errors.wheel_rad_s[wheel][i..end].fill(error * per_m / doubt(s, machine, i));
+            let told_m_s = traction.told_m_s(wheel, error);
+            if is_told {
+                let per_m =
+                    e.wheel_speed_scale.factor / (radius_m[wheel] * (1.0 - e.slippery_ground.slip));
+                errors.wheel_rad_s[wheel][i..end].fill(told_m_s * per_m / doubt(s, machine, i));
+            }
         }
+        before = Some(traction);
     }
     errors
 }
@@ -125,7 +137,7 @@ fn ground_speeds(
     s: &Signals,
     effects: &Effects,
     linkage: &Linkage,
-    (pose, radius_m): (&PerWheel<ArmPose>, &PerWheel<f64>),
+    (pose, radius_m, traction): (&PerWheel<ArmPose>, &PerWheel<f64>, &Traction),
     i: usize,
 ) -> PerWheel<f64> {
     PerWheel::from_fn(|w| {
@@ -139,7 +151,8 @@ fn ground_speeds(
         let by_stroke = |a: f64, b: f64| (b - a) / 1e-4 * forward * s.smooth_stroke_rate_m_s[w][i];
         let turns = by_stroke(pose.angle_rad, after.angle_rad) * radius_m;
         // Turned on its arm and with its arm it rolls; less what it is carried ahead of its frame.
-        (rolls + turns) * (1.0 - e.slippery_ground.slip) - by_stroke(pose.reach_m, after.reach_m)
+        let travels = (rolls + turns) * (1.0 - e.slippery_ground.slip) - traction.creeps_m_s[w];
+        travels - by_stroke(pose.reach_m, after.reach_m)
     })
 }
 

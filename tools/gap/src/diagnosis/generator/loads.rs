@@ -17,6 +17,10 @@ const DRAINED: f64 = 0.8;
 /// holds 1.7 kN.
 const SLOW_M_S: f64 = 0.005;
 
+/// Pressure at which a chamber's frame is full, Pa: 25 000 kPa (facts 2.1), less the 17 steps of a kilopascal by which
+/// the ECU's filter, which cuts off, stops short of it.
+const FULL_PA: f64 = 24.98e6;
+
 /// How long before and after a reading at the end of its scale the filter cannot be undone, samples:
 /// two readings at the slowest rate.
 const OFF_SCALE_SAMPLES: usize = 20;
@@ -79,12 +83,15 @@ impl Loads {
     }
 }
 
-/// Whether a pressure of a cylinder is at the least that a frame holds, or was or will be shortly, so that
-/// nobody knows what it is: a sensor that reads too little, under little load.
+/// Whether a pressure of a cylinder is at the least or at the most that its frame tells, or was or will be
+/// shortly, so that nobody knows what it is: a sensor that reads too little, under little load, or a heavy machine
+/// on a ramp.
 pub(in crate::diagnosis) fn is_off_scale(signals: &Signals, wheel: Wheel, i: usize) -> bool {
     let near = i.saturating_sub(OFF_SCALE_SAMPLES)..=(i + OFF_SCALE_SAMPLES);
     let ends = [*near.start(), i, *near.end()];
-    let at_its_end = |pa: &Samples| ends.iter().any(|i| pa.get(*i).is_some_and(|pa| *pa <= 0.0));
+    let at_its_end = |pa: &Samples| {
+        ends.iter().any(|i| pa.get(*i).is_some_and(|pa| *pa <= 0.0 || *pa >= FULL_PA))
+    };
     signals.chamber_pa[wheel].iter().any(at_its_end)
 }
 
@@ -106,6 +113,18 @@ fn undone(output: &Samples, is_new: &[bool]) -> Samples {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_chamber_that_its_frame_cannot_tell_is_off_scale_and_for_a_while_beside() {
+        let mut s = super::super::still::still(10);
+        for pa in s.chamber_pa[Wheel::Fr].iter_mut() {
+            pa.fill(8.0e6);
+        }
+        // 25 000 kPa as the ECU's filter shows it.
+        s.chamber_pa[Wheel::Fr][0][500..600].fill(24.986e6);
+        let off = |i| is_off_scale(&s, Wheel::Fr, i);
+        assert!(!off(400) && off(490) && off(550) && off(610) && !off(700));
+    }
 
     #[test]
     fn what_the_filter_does_is_undone_at_any_rate_of_readings() {

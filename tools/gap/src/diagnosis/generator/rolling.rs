@@ -35,6 +35,9 @@ const ORDINARY: f64 = 1.75;
 const TRAVELS_RAD_S: f64 = 0.3;
 /// Samples from one look to the next.
 const STRIDE: usize = 5;
+/// Samples to either side over which strokes and speeds are smoothed: at the ends of a log fewer are, and a slope is
+/// not that of what the wheels say.
+const SMOOTHED: usize = 30;
 /// Weight of what pushes tell of a speed, beside a wheel that holds.
 const COASTS: f64 = 0.02;
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
@@ -82,7 +85,8 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
         }
         ahead = product / square;
         errors.ahead_m_s[i..end].fill(ahead);
-        let is_told = is_plane && joint.iter().all(|rad| rad.abs() <= BENT_RAD);
+        let is_whole = i >= SMOOTHED && i + SMOOTHED <= s.len;
+        let is_told = is_plane && is_whole && joint.iter().all(|rad| rad.abs() <= BENT_RAD);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
             let e = &effects.wheels[wheel];
             let error = none[wheel] + ahead * (one[wheel] - none[wheel]) - ground_m_s[wheel];

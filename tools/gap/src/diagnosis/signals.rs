@@ -209,7 +209,8 @@ impl Signals {
         self.scrubs.get_or_init(first)
     }
 
-    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds.
+    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds. They need of a
+    /// machine only its circuits and what torque their pressure makes.
     pub(super) fn torques_nm(
         &self,
         first: impl FnOnce() -> [PerWheel<Samples>; 2],

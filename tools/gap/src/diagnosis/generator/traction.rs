@@ -1,8 +1,8 @@
 //! What wheels push the ground with, how far they slip by it, and which of them slide.
 //!
-//! Motors of a circuit push alike, by its pressures, but for the trim of one that runs away; the ground carries no more than friction times what a
-//! wheel presses it with. A wheel that is pushed harder spins, and its speed says nothing of how fast the machine
-//! goes but that it goes no faster.
+//! Motors of a circuit push alike, by its pressures, but for the trim of one that runs away; the ground
+//! carries no more than friction times what a wheel presses it with. A wheel that is pushed harder spins,
+//! and its speed says nothing of how fast the machine goes but that it goes no faster.
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};

@@ -1,5 +1,7 @@
 //! Residuals of one generator over all runs, in groups that share one unknown scale.
 
+use core::ops::Range;
+
 use xt28_machine::Machine;
 
 use crate::diagnosis::belief::{Base, Belief, Course};
@@ -110,6 +112,17 @@ impl Stack {
             squares[group] += value * value;
         }
         squares
+    }
+
+    /// Values that follow one another and are of one group: which, from where and to where.
+    pub(super) fn stretches(&self) -> Vec<(usize, Range<usize>)> {
+        let mut from = 0;
+        let each = self.group.chunk_by(|a, b| a == b).map(|stretch| {
+            let range = from..from + stretch.len();
+            from = range.end;
+            (stretch[0], range)
+        });
+        each.collect()
     }
 
     fn group_of(&mut self, signal: Signal) -> usize {

@@ -123,7 +123,7 @@ impl<'a> ArmDrive<'a> {
             if self.loads.is_drained.get(i) == Some(&true) {
                 // What came in past the valve is not in the opening: begin anew.
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
-                (seen_n, error_m, began) = (self.loads.reading_n[i], f64::NAN, i);
+                (seen_n, error_m) = (self.loads.reading_n[i], f64::NAN);
             } else if is_new[i] {
                 m_n = s.stroke_scale.factor * self.give_m_n(i, seen_n, &input.motion);
                 error_m = m_n * (seen_n - self.loads.reading_n[i]);

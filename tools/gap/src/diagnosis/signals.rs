@@ -342,6 +342,9 @@ fn slope_over(samples: &Samples, half: usize) -> Samples {
         .collect()
 }
 
+/// Samples to either side that [`smooth`] looks at.
+pub(super) const SMOOTHED: usize = 30;
+
 /// What noise and steps of reading leave: a triangle of 0.6 s around each sample.
 #[must_use]
 pub(super) fn smooth(raw: &Samples) -> Samples {

@@ -32,7 +32,7 @@ const FORCE_S: f64 = 2.0;
 /// Pressure for the largest torque, Pa (the machine's conventions).
 pub(in crate::diagnosis) const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
 /// Speed over which rolling resistance changes its sign, rad/s (assumed).
-const TURNS_RAD_S: f64 = 0.05;
+pub(super) const TURNS_RAD_S: f64 = 0.05;
 
 /// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
@@ -91,10 +91,14 @@ fn circuits_pa(signals: &Signals, i: usize) -> [f64; 2] {
     [measured(1) - measured(0), measured(3) - measured(2)]
 }
 
+/// Whether a wheel's motor is of the first circuit.
+pub(super) fn is_of_first(machine: &Machine, wheel: Wheel) -> bool {
+    machine.wheels.circuit_1.iter().any(|name| name == wheel.name())
+}
+
 /// Torque of a wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
 pub(super) fn motor_nm(s: &Signals, machine: &Machine, wheel: Wheel, i: usize) -> f64 {
-    let first = machine.wheels.circuit_1.iter().any(|name| name == wheel.name());
-    let over_pa = circuits_pa(s, i)[usize::from(!first)];
+    let over_pa = circuits_pa(s, i)[usize::from(!is_of_first(machine, wheel))];
     over_pa * (machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA)
 }
 

@@ -112,11 +112,12 @@ fn undone(output: &Samples, is_new: &[bool]) -> Samples {
 
 #[cfg(test)]
 mod tests {
+    use super::super::still::still;
     use super::*;
 
     #[test]
     fn a_chamber_that_its_frame_cannot_tell_is_off_scale_and_for_a_while_beside() {
-        let mut s = super::super::still::still(10);
+        let mut s = still(10);
         for pa in s.chamber_pa[Wheel::Fr].iter_mut() {
             pa.fill(8.0e6);
         }

@@ -12,7 +12,7 @@ use super::driving::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
 use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
 use super::traction::Traction;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
 #[derive(Clone, Debug)]
@@ -35,9 +35,6 @@ const ORDINARY: f64 = 1.75;
 const TRAVELS_RAD_S: f64 = 0.3;
 /// Samples from one look to the next.
 const STRIDE: usize = 5;
-/// Samples to either side over which strokes and speeds are smoothed: at the ends of a log fewer are, and a slope is
-/// not that of what the wheels say.
-const SMOOTHED: usize = 30;
 /// Weight of what pushes tell of a speed, beside a wheel that holds.
 const COASTS: f64 = 0.02;
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
@@ -85,6 +82,7 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
         }
         ahead = product / square;
         errors.ahead_m_s[i..end].fill(ahead);
+        // At the ends of a log a smooth slope is not that of what the wheels say.
         let is_whole = i >= SMOOTHED && i + SMOOTHED <= s.len;
         let is_told = is_plane && is_whole && joint.iter().all(|rad| rad.abs() <= BENT_RAD);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {

@@ -7,11 +7,9 @@
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};
 
-use super::driving::motor_nm;
-use crate::diagnosis::signals::{Samples, Signals, smooth};
+use super::driving::{TURNS_RAD_S, is_of_first, motor_nm};
+use crate::diagnosis::signals::{SMOOTHED, Samples, Signals, smooth};
 
-/// Speed over which rolling resistance changes its sign, rad/s (assumed).
-const TURNS_RAD_S: f64 = 0.05;
 /// Push over friction up to which a wheel surely holds, and from which on it surely slides: pressures come
 /// twenty times a second, and friction differs from place to place (assumed).
 const HOLDS: [f64; 2] = [0.8, 1.2];
@@ -19,16 +17,14 @@ const HOLDS: [f64; 2] = [0.8, 1.2];
 /// (assumed).
 const CAUGHT_M_S: f64 = 0.1;
 const CAUGHT_S: f64 = 0.5;
-/// Samples by which smooth wheel speeds tell a push before it is there, and those looked at among them.
-const AHEAD: usize = 30;
+/// Samples from one look to the next where a push that smooth wheel speeds tell before it is there is sought.
 const APART: usize = 10;
 
 /// Torques of the motors on their wheels, Nm, as they are and as smooth as the wheel speeds: by their circuit's
 /// pressures and the trim of each wheel; none where no pressures are known.
 fn torques_nm<'a>(s: &'a Signals, machine: &Machine) -> &'a [PerWheel<Samples>; 2] {
     s.torques_nm(|| {
-        let first =
-            PerWheel::from_fn(|w| machine.wheels.circuit_1.iter().any(|name| name == w.name()));
+        let first = PerWheel::from_fn(|w| is_of_first(machine, w));
         let mean_rad_s = |w: Wheel, i: usize| {
             let of = Wheel::ALL.into_iter().filter(|other| first[*other] == first[w]);
             of.map(|other| s.wheel_speed_rad_s[other][i]).sum::<f64>() / 3.0
@@ -48,7 +44,7 @@ fn torques_nm<'a>(s: &'a Signals, machine: &Machine) -> &'a [PerWheel<Samples>; 
 
 /// The largest of `torque_nm` that shows in a smooth speed at sample `i`.
 fn peak_nm(torque_nm: &Samples, i: usize) -> f64 {
-    let near = (0..=AHEAD).step_by(APART).map(|by| torque_nm[(i + by).min(torque_nm.len() - 1)]);
+    let near = (0..=SMOOTHED).step_by(APART).map(|by| torque_nm[(i + by).min(torque_nm.len() - 1)]);
     near.max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0)
 }
 

@@ -1,6 +1,8 @@
 //! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
-use xt28_gap::diagnosis::{Base, Evidence, Fit, Generator, Hypothesis, Knob, Signal, Signals};
+use xt28_gap::diagnosis::{
+    Base, Evidence, Fit, Generator, Hypothesis, Knob, Residual, Signal, Signals,
+};
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
 use xt28_machine::{Axle, Machine, Side, Wheel};
@@ -145,14 +147,31 @@ fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
 }
 
 #[test]
+fn gyroscopes_of_another_scale_sway() {
+    let floors = |case: Case| {
+        let runs = signals(case.only(Manoeuvre::Multisine, 32.0));
+        let machine = Machine::xt28();
+        rms(&Generator::Stance.residuals(&runs[0], &machine, &Effects::default()), Signal::RollSway)
+    };
+    let faulty = Case::of(1_147_746_101, Cause::find("gyro-scale").unwrap(), Scope::All);
+    let (sound, other) = (floors(faulty.without_faults()), floors(faulty));
+    assert!(sound < 1.0 && other > 2.0, "{sound} floors, with the fault {other}");
+}
+
+/// Root mean square of what a residual says, floors.
+fn rms(residuals: &[Residual], signal: Signal) -> f64 {
+    let of = residuals.iter().find(|residual| residual.signal == signal).unwrap();
+    let told: Vec<f64> = of.values.iter().copied().filter(|value| value.is_finite()).collect();
+    assert!(told.len() > 100, "{signal}: {}", told.len());
+    (told.iter().map(|value| value * value).sum::<f64>() / told.len() as f64).sqrt()
+}
+
+#[test]
 fn an_antenna_that_leans_while_arms_lift_is_no_slip() {
     let runs = signals(Case::draw(42, Kind::Null).only(Manoeuvre::Mixed, 32.0));
     let residuals = Generator::Travel.residuals(&runs[0], &Machine::xt28(), &Effects::default());
     for (signal, floors) in [(Signal::TravelSpeed, 1.1), (Signal::TravelCourse, 0.6)] {
-        let of = residuals.iter().find(|residual| residual.signal == signal).unwrap();
-        let told: Vec<f64> = of.values.iter().copied().filter(|value| value.is_finite()).collect();
-        assert!(told.len() > 100, "{signal}: {}", told.len());
-        let mean_square = told.iter().map(|value| value * value).sum::<f64>() / told.len() as f64;
-        assert!(mean_square.sqrt() < floors, "{signal}: {}", mean_square.sqrt());
+        let left = rms(&residuals, signal);
+        assert!(left < floors, "{signal}: {left}");
     }
 }

@@ -228,6 +228,8 @@ impl Generator {
                     thinned(Signal::Weight, e.weight_n),
                     thinned(Signal::WeightX, e.weight_x_m),
                     thinned(Signal::WeightY, e.weight_y_m),
+                    thinned(Signal::RollSway, e.roll_sway_rad),
+                    thinned(Signal::PitchSway, e.pitch_sway_rad),
                 ];
                 let feet = e.contact_m.0.into_iter().zip(Wheel::ALL);
                 all.extend(feet.map(|(raw, w)| thinned(Signal::Contact(w), raw)));

@@ -104,6 +104,8 @@ fn reading(
         }
         (_, Signal::Roll) => ("roll, deg", deg, Some(s.roll_rad.clone())),
         (_, Signal::Pitch) => ("pitch, deg", deg, Some(s.pitch_rad.clone())),
+        (_, Signal::RollSway) => ("roll, deg", deg, None),
+        (_, Signal::PitchSway) => ("pitch, deg", deg, None),
         (_, Signal::WheelSpeed(w)) => {
             ("wheel speed, rad/s", 1.0, Some(s.wheel_speed_rad_s[w].clone()))
         }

@@ -9,6 +9,7 @@ mod layout;
 mod lean;
 mod motion;
 mod plane;
+mod sway;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 use xt28_sim::{Effects, Parts};
@@ -19,6 +20,7 @@ use crate::diagnosis::instant::Instant;
 use crate::diagnosis::signals::{Samples, Signals};
 use carried::Carrier;
 use holds::Holds;
+use instants::STANDING;
 use layout::{Layout, Reach};
 pub(super) use lean::antenna_leans_m;
 use plane::{Foot, Plane};
@@ -39,6 +41,10 @@ pub(super) struct StanceErrors {
     pub(super) weight_y_m: Samples,
     /// How each wheel breaks the rule that it touches the ground or carries nothing, m.
     pub(super) contact_m: PerWheel<Samples>,
+    /// Roll that the strokes say less the roll measured, as it changes within seconds, rad.
+    pub(super) roll_sway_rad: Samples,
+    /// The same of pitch, rad.
+    pub(super) pitch_sway_rad: Samples,
 }
 
 /// Errors of one instant, in the order of [`StanceErrors`].
@@ -46,6 +52,8 @@ struct Error {
     attitude_rad: [f64; 2],
     weight: [f64; 3],
     contact_m: PerWheel<f64>,
+    /// Roll and pitch as [`StanceErrors`] has them, but whatever moves.
+    lean_rad: [f64; 2],
 }
 
 /// How much more doubtful the place of the weight is while wheels roll: whether rolling resistance acts
@@ -61,6 +69,7 @@ const UNKNOWN: Error = Error {
     attitude_rad: [f64::NAN; 2],
     weight: [f64::NAN; 3],
     contact_m: PerWheel([f64::NAN; 6]),
+    lean_rad: [f64::NAN; 2],
 };
 
 /// Stance over a run.
@@ -89,8 +98,15 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         .min_by(|a, b| left(a).total_cmp(&left(b)))
         .unwrap_or_else(|| held_by(None));
     let of = |value: &dyn Fn(&Error) -> f64| {
-        instants::held_between(&errors.iter().map(value).collect::<Vec<_>>(), s.len)
+        let standing: Samples = errors.iter().step_by(STANDING).map(value).collect();
+        instants::held_between(&standing, STANDING, s.len)
     };
+    let sways = [0, 1].map(|angle| {
+        let leans = errors.iter().map(|e| e.lean_rad[angle]);
+        let sways_rad = sway::sways_rad(leans.zip(instants.iter().map(|i| i.is_calm)));
+        instants::held_between(&sways_rad, 1, s.len)
+    });
+    let [roll_sway_rad, pitch_sway_rad] = sways;
     StanceErrors {
         roll_rad: of(&|e| e.attitude_rad[0]),
         pitch_rad: of(&|e| e.attitude_rad[1]),
@@ -98,6 +114,8 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         weight_x_m: of(&|e| e.weight[1]),
         weight_y_m: of(&|e| e.weight[2]),
         contact_m: PerWheel::from_fn(|w| of(&|e| e.contact_m[w])),
+        roll_sway_rad,
+        pitch_sway_rad,
     }
 }
 
@@ -118,14 +136,14 @@ fn judge(
     });
     let plane = Plane::through(&feet)?;
     let contact_m = PerWheel::from_fn(|w| plane.error_m(&feet[w]));
-    if !instant.is_calm {
-        return Some(Error { contact_m, ..UNKNOWN });
-    }
     let imu = &effects.sensors.imu_offset;
     let [roll, pitch] =
         [instant.attitude_rad[0] - imu.roll_rad, instant.attitude_rad[1] - imu.pitch_rad];
     let [nose_rad, left_rad] = ground.attitude_rad(instant.heading);
-    let attitude_rad = [plane.slope_y - left_rad - roll, nose_rad - plane.slope_x - pitch];
+    let lean_rad = [plane.slope_y - left_rad - roll, nose_rad - plane.slope_x - pitch];
+    if !instant.is_calm {
+        return Some(Error { contact_m, lean_rad, ..UNKNOWN });
+    }
     let [left, ahead] = instant.acceleration_m_s2.map(|a| a / GRAVITY_M_S2);
     let lean = [roll.tan() - left, -pitch.tan() - ahead];
     let weight_n = GRAVITY_M_S2
@@ -136,9 +154,10 @@ fn judge(
     let rolls = instant.wheels.iter().map(|(_, wheel)| wheel.rolls.abs()).sum::<f64>() / 6.0;
     weight[1] /= 1.0 + ROLLING_DOUBT * rolls;
     Some(Error {
-        attitude_rad: attitude_rad.map(|error| error / instant.doubt),
+        attitude_rad: lean_rad.map(|error| error / instant.doubt),
         weight: weight.map(|error| error / instant.doubt),
         contact_m,
+        lean_rad,
     })
 }
 
@@ -154,7 +173,7 @@ fn left(errors: &[Error]) -> f64 {
             + square(left_m, Signal::WeightY)
             + square(error.attitude_rad[1], Signal::Pitch)
     };
-    errors.iter().map(of).sum()
+    errors.iter().step_by(STANDING).map(of).sum()
 }
 
 /// Weight less what the wheels carry, N, and where it should act less where they say, m.

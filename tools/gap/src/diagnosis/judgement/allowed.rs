@@ -11,6 +11,9 @@ const LAW: f64 = 0.03;
 /// What sound machines leave in roll, in floors, and the share of a gap in it: one make half of one,
 /// another up to 1.4, by which wheels carry.
 const ROLL: [f64; 2] = [1.3, 0.15];
+/// The same of how roll and pitch change within seconds: machines that turn on a slope differ in when their filters
+/// learn of it.
+const SWAY: [f64; 2] = [1.0, 0.15];
 /// The same of the course over ground, which a receiver tells the worse the slower the machine is.
 const COURSE: [f64; 2] = [1.3, LAW];
 /// Signals with fewer independent samples say nothing of what is left.
@@ -99,6 +102,7 @@ pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2]) -> f64 {
 fn floor_and_share(names: &[&str], left: &Left) -> [f64; 2] {
     let [floor, law] = match left.signal {
         Signal::Roll => ROLL,
+        Signal::RollSway | Signal::PitchSway => SWAY,
         Signal::TravelCourse => COURSE,
         _ => [1.0, LAW],
     };

@@ -13,8 +13,13 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time constant of the filter through which the ECU sees pressures, s: 0.94088 a tick (facts 3.2).
 pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
-/// Samples of the log from one instant to the next, half a second: a stance changes slowly.
-const STRIDE: usize = 50;
+/// Samples of the log from one instant to the next: a machine that sways does so within seconds.
+const STRIDE: usize = 25;
+/// Instants from one at which the stance is judged to the next, half a second: it changes slowly.
+pub(super) const STANDING: usize = 2;
+/// Time from one instant to the next, s.
+#[allow(clippy::cast_precision_loss)]
+pub(super) const STEP_S: f64 = STRIDE as f64 * DT_S;
 /// Speed over which rolling resistance fades in, rad/s: 5 cm/s at the rim (assumed).
 const FADES_RAD_S: f64 = 0.07;
 /// Stroke by which arms press wheels that a brake holds against one another: no log says how hard.
@@ -39,7 +44,7 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
     let heading = headings_felt(&headings(s, &motion)).map(|felt| felt.map(|part| late(&part)));
     let (doubt, held) = (doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
-    (STRIDE / 2..s.len)
+    (STRIDE..s.len)
         .step_by(STRIDE)
         .map(|i| Instant {
             sample: i,
@@ -56,9 +61,10 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
         .collect()
 }
 
-/// Values at the instants, each held until the next, ten a second over a run of `len` samples.
-pub(super) fn held_between(values: &[f64], len: usize) -> Samples {
-    (0..len / 10).map(|k| values.get(k * 10 / STRIDE).copied().unwrap_or(f64::NAN)).collect()
+/// Values at every so many `instants`, each held until the next, ten a second over a run of `len` samples.
+pub(super) fn held_between(values: &[f64], instants: usize, len: usize) -> Samples {
+    let stride = STRIDE * instants;
+    (0..len / 10).map(|k| values.get(k * 10 / stride).copied().unwrap_or(f64::NAN)).collect()
 }
 
 fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize) -> AtWheel {

@@ -102,10 +102,11 @@ impl Touches {
             let (own, other) = (settled[i][j], settled[j][i]);
             (own + LEAST) / (own + other * (1.0 - own) + 2.0 * LEAST)
         };
-        let stays: [f64; TOUCHES_MAX] = core::array::from_fn(|i| {
+        let mut stays = [1.0; TOUCHES_MAX];
+        for (i, stays) in stays[..count].iter_mut().enumerate() {
             let others = (0..count).filter(|&j| j != i);
-            others.fold(1.0, |least: f64, j| least.min(part(i, j)))
-        });
+            *stays = others.fold(1.0, |least: f64, j| least.min(part(i, j)));
+        }
         for i in 0..count {
             let others = (0..count).filter(|&j| j != i);
             let shared: f64 = others.map(|j| stays[j] * (1.0 - settled[i][j])).sum();

@@ -8,6 +8,8 @@
 //! moves no further than the centre does (the stability of persistence: Cohen-Steiner, Edelsbrunner
 //! and Harer, Stability of Persistence Diagrams, 2007).
 
+use arrayvec::ArrayVec;
+
 use crate::grid::SPACING_M;
 use crate::{Grid, Nearest};
 
@@ -75,14 +77,12 @@ struct Flood<'a> {
     inside: Option<usize>,
     /// Triangles in the window that are wet or about to be, a bit each.
     seen: [u64; 2 * WINDOW as usize * WINDOW as usize / 64],
-    open: [Shore; OPEN_MAX],
-    count: usize,
+    open: ArrayVec<Shore, OPEN_MAX>,
 }
 
 impl<'a> Flood<'a> {
     fn new(grid: &'a Grid, centre_m: [f64; 3], source: &Nearest, limit_m2: f64) -> Self {
         let [x, y, _] = source.point_m;
-        let nowhere = Face { column: 0, row: 0, upper: false };
         let first = grid.cell(x, y).map(|cell| cell - i64::from(WINDOW / 2));
         let [x0, y0] = grid.plan_m(first[0], first[1]);
         let mut flood = Self {
@@ -93,10 +93,10 @@ impl<'a> Flood<'a> {
             first_m: [x0 - centre_m[0], y0 - centre_m[1]],
             inside: grid.inside(first, WINDOW as usize + 2),
             seen: [0; 2 * WINDOW as usize * WINDOW as usize / 64],
-            open: [Shore { pass_m2: 0.0, beyond: nowhere }; OPEN_MAX],
-            count: 1,
+            open: ArrayVec::new(),
         };
-        flood.open[0].beyond = flood.face(source);
+        let beyond = flood.face(source);
+        flood.open.push(Shore { pass_m2: 0.0, beyond });
         flood
     }
 
@@ -116,17 +116,13 @@ impl<'a> Flood<'a> {
 
     /// Takes the lowest place to go on at.
     fn lowest(&mut self) -> Option<Shore> {
-        let open = &mut self.open[..self.count];
         let mut at = 0;
-        for (i, shore) in open.iter().enumerate() {
-            if shore.pass_m2 < open[at].pass_m2 {
+        for (i, shore) in self.open.iter().enumerate() {
+            if shore.pass_m2 < self.open[at].pass_m2 {
                 at = i;
             }
         }
-        let lowest = *open.get(at)?;
-        open[at] = open[self.count - 1];
-        self.count -= 1;
-        Some(lowest)
+        self.open.swap_pop(at)
     }
 
     /// Adds the edges of a triangle to the shore.
@@ -164,9 +160,9 @@ impl<'a> Flood<'a> {
         let share = (-dot(a, along) / dot(along, along)).clamp(0.0, 1.0);
         let nearest = [0, 1, 2].map(|axis| a[axis] + share * along[axis]);
         let pass_m2 = dot(nearest, nearest);
-        if pass_m2 < self.limit_m2 && self.count < OPEN_MAX {
-            self.open[self.count] = Shore { pass_m2, beyond };
-            self.count += 1;
+        if pass_m2 < self.limit_m2 {
+            // No ball of the vehicle has a shore as long as that; an edge beyond is left out.
+            let _ = self.open.try_push(Shore { pass_m2, beyond });
         }
     }
 

@@ -1,7 +1,7 @@
 //! Hypotheses ranked on two sets of runs: fitted on one, held against the other.
 
 use rayon::prelude::*;
-use xt28_machine::Machine;
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Parameter};
 
@@ -78,6 +78,18 @@ impl Candidate {
     /// law bends to, and foretells nothing.
     pub(super) fn second_score(&self) -> f64 {
         self.foretelling(SECOND_FORETOLD)
+    }
+
+    /// Whether a `second` beside it would be more of the same from a later instant of every run on: both set
+    /// in late, in one block and on some wheel of both. What grows by steps is no two causes, but one that
+    /// changes as a run goes on, and is in no catalogue.
+    pub(super) fn goes_on_as(&self, second: &Self) -> bool {
+        let (own, other) = (&self.fit, &second.fit);
+        let is_on_both = |w| own.hypothesis.scope.contains(w) && other.hypothesis.scope.contains(w);
+        own.from_s > 0.0
+            && other.from_s > own.from_s
+            && own.hypothesis.effect.block == other.hypothesis.effect.block
+            && Wheel::ALL.into_iter().any(is_on_both)
     }
 
     fn foretelling(&self, [times, beside]: [f64; 2]) -> f64 {
@@ -314,6 +326,7 @@ fn rank(all: &mut [Candidate]) {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::{Axle, Side};
     use xt28_sim::effects::Scope;
 
     use super::*;
@@ -331,5 +344,27 @@ mod tests {
         };
         assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
         assert!(is_there_at(0.5, 0.05, 14.0) && is_there_at(0.0, 0.05, 0.0));
+    }
+
+    #[test]
+    fn what_grows_by_steps_is_no_pair() {
+        let from = |name: &str, scope: Scope, from_s: f64| {
+            let mut late = Candidate::made_up(name, scope, 400.0);
+            late.fit.from_s = from_s;
+            late
+        };
+        let gain = from("valve-gain", Scope::All, 16.8);
+        assert!(gain.goes_on_as(&from("speed-asymmetry", Scope::Axle(Axle::Rear), 24.1)));
+        let other = [
+            from("speed-asymmetry", Scope::All, 0.0),
+            from("speed-asymmetry", Scope::All, 16.8),
+            from("steer-lag", Scope::All, 24.1),
+        ];
+        assert!(other.iter().all(|second| !gain.goes_on_as(second)));
+        let [left, right] = [Side::Left, Side::Right].map(Scope::Side);
+        let [left, right] = [from("valve-gain", left, 8.0), from("valve-lag", right, 12.0)];
+        assert!(!left.goes_on_as(&right));
+        let always = from("valve-gain", Scope::All, 0.0);
+        assert!(!always.goes_on_as(&from("speed-asymmetry", Scope::All, 24.1)));
     }
 }

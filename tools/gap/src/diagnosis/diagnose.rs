@@ -118,6 +118,7 @@ impl Inquiry {
         let mut first = single[0].clone();
         let mut court = beside(&first);
         let mut seconds = tested(court.candidates(&others(&first, &self.catalogue)), shown);
+        seconds.retain(|second| !first.goes_on_as(second));
         let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
         else {
             return (Vec::new(), court);
@@ -135,6 +136,7 @@ impl Inquiry {
             if moved {
                 court = beside(&first);
                 seconds = tested(court.candidates(&[second.fit.hypothesis.effect]), shown);
+                seconds.retain(|second| !first.goes_on_as(second));
             }
         }
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);

@@ -16,6 +16,8 @@ use super::signals::Signals;
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
 /// How many of the leading hypotheses are asked when they set in.
 const ASKED: usize = 6;
+/// How many are asked beside them that set in late and foretell nothing.
+const ASKED_BESIDE: usize = 3;
 /// Share of the best one's score above which another is sought to the floor of its valley.
 const NEAR: f64 = 0.5;
 /// What values may lose on the runs fitted that these are said to leave open, nats, and as a share of
@@ -132,7 +134,7 @@ impl<'a> Docket<'a> {
         let leading = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
         let settled: Vec<Candidate> = leading.filter_map(|found| self.settled(found)).collect();
         merge(&mut all, settled);
-        let asked = all.par_iter().take(ASKED);
+        let asked = asked(&all).into_par_iter();
         let late: Vec<Candidate> = asked.filter_map(|candidate| self.set_in(candidate)).collect();
         merge(&mut all, late);
         let elsewhere = all.first().map_or(Vec::new(), |best| self.elsewhere(best));
@@ -286,6 +288,16 @@ impl<'a> Docket<'a> {
     }
 }
 
+/// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on
+/// but foretells less than nothing. That may be there from another: a band that opens two seconds early harms where
+/// an arm moves just then.
+fn asked(all: &[Candidate]) -> Vec<&Candidate> {
+    let (leading, others) = all.split_at(all.len().min(ASKED));
+    let mut late: Vec<&Candidate> = others.iter().filter(|other| other.fit.from_s > 0.0).collect();
+    late.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+    leading.iter().chain(late.into_iter().take(ASKED_BESIDE)).collect()
+}
+
 /// What it explains that an arm's oil begins anew where an effect of it sets in late, nats: what next to
 /// nothing of the effect gains there. A jump of a pressure is gone with it, whatever the effect.
 fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
@@ -344,6 +356,20 @@ mod tests {
         };
         assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
         assert!(is_there_at(0.5, 0.05, 14.0) && is_there_at(0.0, 0.05, 0.0));
+    }
+
+    #[test]
+    fn what_explains_much_from_an_instant_on_is_asked_though_it_foretells_nothing() {
+        let mut all: Vec<Candidate> =
+            (0..12).map(|_| Candidate::made_up("valve-gain", Scope::All, 5.0)).collect();
+        for (k, (from_s, nats)) in [(12.0, 300.0), (0.0, 900.0)].into_iter().enumerate() {
+            let beside = &mut all[10 + k];
+            (beside.fit.from_s, beside.fit.log_evidence) = (from_s, nats);
+            beside.held_gain = Some(-200.0);
+        }
+        let asked = asked(&all);
+        assert_eq!(asked.len(), ASKED + 1);
+        assert_eq!(asked[ASKED].fit.log_evidence, 300.0);
     }
 
     #[test]

@@ -221,19 +221,8 @@ impl Generator {
                 ]
             }
             Self::Stance => {
-                let e = stance::stance_errors(s, machine, effects);
-                let mut all = vec![
-                    thinned(Signal::Roll, e.roll_rad),
-                    thinned(Signal::Pitch, e.pitch_rad),
-                    thinned(Signal::Weight, e.weight_n),
-                    thinned(Signal::WeightX, e.weight_x_m),
-                    thinned(Signal::WeightY, e.weight_y_m),
-                    thinned(Signal::RollSway, e.roll_sway_rad),
-                    thinned(Signal::PitchSway, e.pitch_sway_rad),
-                ];
-                let feet = e.contact_m.0.into_iter().zip(Wheel::ALL);
-                all.extend(feet.map(|(raw, w)| thinned(Signal::Contact(w), raw)));
-                all
+                let errors = stance::stance_errors(s, machine, effects).by_signal();
+                errors.map(|(signal, raw)| thinned(signal, raw)).collect()
             }
             Self::Travel => {
                 let e = travel::travel_errors(s, machine, effects);

@@ -11,7 +11,7 @@ mod motion;
 mod plane;
 mod sway;
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::grade::Grade;
@@ -45,6 +45,23 @@ pub(super) struct StanceErrors {
     pub(super) roll_sway_rad: Samples,
     /// The same of pitch, rad.
     pub(super) pitch_sway_rad: Samples,
+}
+
+impl StanceErrors {
+    /// Each beside its signal.
+    pub(super) fn by_signal(self) -> impl Iterator<Item = (Signal, Samples)> {
+        let whole = [
+            (Signal::Roll, self.roll_rad),
+            (Signal::Pitch, self.pitch_rad),
+            (Signal::Weight, self.weight_n),
+            (Signal::WeightX, self.weight_x_m),
+            (Signal::WeightY, self.weight_y_m),
+            (Signal::RollSway, self.roll_sway_rad),
+            (Signal::PitchSway, self.pitch_sway_rad),
+        ];
+        let feet = Wheel::ALL.into_iter().map(Signal::Contact).zip(self.contact_m.0);
+        whole.into_iter().chain(feet)
+    }
 }
 
 /// Errors of one instant, in the order of [`StanceErrors`].

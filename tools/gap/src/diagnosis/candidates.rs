@@ -16,7 +16,7 @@ use super::signals::Signals;
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
 /// How many of the leading hypotheses are asked when they set in.
 const ASKED: usize = 6;
-/// How many are asked beside them that set in late and foretell nothing.
+/// How many are asked beside them that set in late, whatever they foretell.
 const ASKED_BESIDE: usize = 3;
 /// Share of the best one's score above which another is sought to the floor of its valley.
 const NEAR: f64 = 0.5;
@@ -289,7 +289,7 @@ impl<'a> Docket<'a> {
 }
 
 /// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on
-/// but foretells less than nothing. That may be there from another: a band that opens two seconds early harms where
+/// whatever it foretells. It may be there from another: a band that opens two seconds early harms where
 /// an arm moves just then.
 fn asked(all: &[Candidate]) -> Vec<&Candidate> {
     let (leading, others) = all.split_at(all.len().min(ASKED));

@@ -115,10 +115,14 @@ impl Inquiry {
         let others = |one: &Candidate, among: &[&'static Effect]| -> Vec<&'static Effect> {
             among.iter().copied().filter(|effect| *effect != one.fit.hypothesis.effect).collect()
         };
+        let seconds_of = |court: &Docket, first: &Candidate, among: &[&'static Effect]| {
+            let mut seconds = tested(court.candidates(among), shown);
+            seconds.retain(|second| !first.goes_on_as(second));
+            seconds
+        };
         let mut first = single[0].clone();
         let mut court = beside(&first);
-        let mut seconds = tested(court.candidates(&others(&first, &self.catalogue)), shown);
-        seconds.retain(|second| !first.goes_on_as(second));
+        let mut seconds = seconds_of(&court, &first, &others(&first, &self.catalogue));
         let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
         else {
             return (Vec::new(), court);
@@ -135,8 +139,7 @@ impl Inquiry {
             first = better.clone();
             if moved {
                 court = beside(&first);
-                seconds = tested(court.candidates(&[second.fit.hypothesis.effect]), shown);
-                seconds.retain(|second| !first.goes_on_as(second));
+                seconds = seconds_of(&court, &first, &[second.fit.hypothesis.effect]);
             }
         }
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);

@@ -77,11 +77,11 @@ struct Error {
 /// between wheel and arm or between wheel and ground moves it by 15 mm, and plants differ in that.
 const ROLLING_DOUBT: f64 = 2.0;
 
-/// What nothing can be said of: the ground is not level, pressures do not say it, brakes hold wheels
-/// against their arms, the machine is on fewer than three wheels.
 /// How fast a wheel's foot may give way to a force along the ground, m/s/N: not at all, or as friction does on
 /// the labelled machines of a second plant (0.1 m/s at 10 kNm).
 const CREEPS_M_S_N: [f64; 2] = [0.0, 7.0e-6];
+/// What nothing can be said of: the ground is not level, pressures do not say it, brakes hold wheels
+/// against their arms, the machine is on fewer than three wheels.
 const UNKNOWN: Error = Error {
     attitude_rad: [f64::NAN; 2],
     weight: [f64::NAN; 3],
@@ -118,12 +118,11 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         let standing: Samples = errors.iter().step_by(STANDING).map(value).collect();
         instants::held_between(&standing, STANDING, s.len)
     };
-    let sways = [0, 1].map(|angle| {
+    let [roll_sway_rad, pitch_sway_rad] = [0, 1].map(|angle| {
         let leans = errors.iter().map(|e| e.lean_rad[angle]);
         let sways_rad = sway::sways_rad(leans.zip(instants.iter().map(|i| i.is_calm)));
         instants::held_between(&sways_rad, 1, s.len)
     });
-    let [roll_sway_rad, pitch_sway_rad] = sways;
     StanceErrors {
         roll_rad: of(&|e| e.attitude_rad[0]),
         pitch_rad: of(&|e| e.attitude_rad[1]),

@@ -24,8 +24,9 @@ pub(super) fn sways_rad(errors: impl Iterator<Item = (f64, bool)>) -> Samples {
     let sway = |(error_rad, is_calm): (f64, bool)| {
         if !error_rad.is_finite() {
             means_rad = None;
+            return f64::NAN;
         }
-        if !error_rad.is_finite() || !is_calm {
+        if !is_calm {
             return f64::NAN;
         }
         let [now, recent] = means_rad.unwrap_or([error_rad; 2]);

@@ -123,6 +123,37 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
 }
 
 #[test]
+fn what_a_message_held_while_it_was_away_is_not_taken_for_measured() {
+    let id = format!(" {}#", id("PosFront"));
+    let where_of = |log: &str| {
+        let output = xt28(&["gap", "where", log, "--dbc", DBC]);
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (_folder, log) = changed(|at_s, rest| {
+        let is_there = !(6.0..8.0).contains(&at_s) || !rest.contains(&id);
+        is_there.then(|| (at_s, rest.to_owned()))
+    });
+    let (status, talk) = where_of(&log);
+    assert_ne!(status, Some(2), "{talk}");
+    assert!(talk.contains("stroke.FR is away from 6.0 to 8.0 s of a log of 10.0 s"), "{talk}");
+    assert!(talk.contains("only 0.0 to 6.0 s of it are looked at"), "{talk}");
+    // The logger paused, or its clock went ahead: one cannot tell which.
+    let (_folder, log) =
+        changed(|at_s, rest| Some((if at_s > 3.0 { at_s + 0.3 } else { at_s }, rest.to_owned())));
+    let (_, talk) = where_of(&log);
+    assert!(talk.contains("nothing was logged from 3.00 to 3.3"), "{talk}");
+    assert!(talk.contains("only 3.3 to 10.3 s of it are looked at"), "{talk}");
+}
+
+#[test]
+fn a_clock_that_was_set_back_a_little_makes_two_logs_too() {
+    let (_folder, log) =
+        changed(|at_s, rest| Some((if at_s > 5.0 { at_s - 0.2 } else { at_s }, rest.to_owned())));
+    let talk = refusal(&[&log]);
+    assert!(talk.contains("clock steps by -0.2") && talk.contains("cut the log"), "{talk}");
+}
+
+#[test]
 fn pressures_on_another_scale_than_loads_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let dbc = path(folder.path(), "bar.dbc");

@@ -79,7 +79,9 @@ impl RunSet {
                 (None, Some(_)) => About::terrain_of(known.about.unwrap_or(path), path)?,
                 (None, None) => Terrain::Flat,
             };
-            let (log, note) = attended(FieldLog::load(path, decoder, accept_cut)?);
+            let log = FieldLog::load(path, decoder, accept_cut)?;
+            soundness::one_clock(&log)?;
+            let (log, note) = attended(log);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
                 file: file_name(path),

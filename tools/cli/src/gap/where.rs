@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 use xt28_gap::diagnosis::{
-    Evidence, Floors, Generator, Knob, Signals, share_resistance, with_noise_of,
+    Evidence, Floors, Generator, Knob, Signals, share_resistance, swapped_wheels, with_noise_of,
 };
 use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
@@ -84,6 +84,9 @@ impl Where {
         };
         let mut runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
         RunSet::ensure_agreeing(&runs)?;
+        if let Some(swap) = swapped_wheels(&runs) {
+            eprintln!("wheels look swapped: {swap}; nothing is put in order by itself");
+        }
         share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
             eprintln!("{remark}");

@@ -1,38 +1,92 @@
-//! The part of a log in which everything that a diagnosis reads is there: a message that begins late or stops
-//! early was not measured before or after, and its first or last value says nothing of that.
+//! The part of a log in which everything that a diagnosis reads is there: what a message that begins late,
+//! stops early or stays away held meanwhile was not measured, and says nothing of the machine.
 
-use crate::FieldLog;
 use crate::diagnosis::sampled;
+use crate::{FieldLog, Series};
 
-/// How long a value may be held before its first sample or after its last, s: the slowest message that is
-/// read comes ten times a second.
+/// How long a value may be held, s: the slowest message that is read comes ten times a second.
 const HELD_MAX_S: f64 = 1.0;
+/// How long nothing at all may come, s: a hundred frames and more are due in that time. A logger that paused
+/// and a clock that jumped look the same, and over a jump every rate is wrong.
+const SILENCE_MAX_S: f64 = 0.15;
 
-/// `log` from where all that is read has begun to where some of it stops, and one sentence on what was
-/// left out; the log itself where that is nothing. What is never there is for others to say.
+/// A time in which something was not measured.
+struct Hole {
+    span_s: [f64; 2],
+    what: String,
+}
+
+/// The longest part of `log` in which all that is read is there, and one sentence on what was left out; the
+/// log itself where that is nothing. What is never there is for others to say.
 pub(super) fn attended(log: FieldLog) -> (FieldLog, Option<String>) {
     let end_s = log.duration_s();
-    let spans = sampled().filter_map(|channel| {
-        let series = log.series(channel)?;
-        let (first_s, _) = series.iter().next()?;
-        Some((channel, [first_s, series.end_s()?]))
-    });
-    let spans: Vec<_> = spans.collect();
-    let begins = spans.iter().max_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]));
-    let stops = spans.iter().min_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
-    let begins = begins.filter(|(_, span)| span[0] > HELD_MAX_S);
-    let stops = stops.filter(|(_, span)| end_s - span[1] > HELD_MAX_S);
-    if begins.is_none() && stops.is_none() {
+    let mut holes = holes(&log, end_s);
+    if holes.is_empty() {
         return (log, None);
     }
-    let late = begins.map(|(channel, [at_s, _])| format!("{channel} begins at {at_s:.1} s"));
-    let early = stops.map(|(channel, [_, at_s])| format!("{channel} stops at {at_s:.1} s"));
-    let why = [late, early].into_iter().flatten().collect::<Vec<_>>().join(" and ");
-    let from_s = begins.map_or(0.0, |(_, span)| span[0]);
-    let to_s = stops.map_or(end_s, |(_, span)| span[1]).max(from_s);
+    holes.sort_by(|a, b| a.span_s[0].total_cmp(&b.span_s[0]));
+    let (mut best_s, mut bounds) = ([0.0, 0.0], (None, None));
+    let (mut from_s, mut before) = (0.0, None);
+    for hole in &holes {
+        let [begins_s, ends_s] = hole.span_s;
+        if begins_s - from_s > best_s[1] - best_s[0] {
+            (best_s, bounds) = ([from_s, begins_s], (before, Some(hole)));
+        }
+        if ends_s > from_s {
+            (from_s, before) = (ends_s, Some(hole));
+        }
+    }
+    if end_s - from_s > best_s[1] - best_s[0] {
+        (best_s, bounds) = ([from_s, end_s], (before, None));
+    }
+    let why = [bounds.0, bounds.1].into_iter().flatten().map(|hole| hole.what.as_str());
     let note = format!(
-        "{}: {why} of a log of {end_s:.1} s; only {from_s:.1} to {to_s:.1} s of it are looked at.",
-        log.name()
+        "{}: {} of a log of {end_s:.1} s; only {:.1} to {:.1} s of it are looked at.",
+        log.name(),
+        why.collect::<Vec<_>>().join(" and "),
+        best_s[0],
+        best_s[1],
     );
-    (log.within([from_s, to_s]), Some(note))
+    (log.within(best_s), Some(note))
+}
+
+fn holes(log: &FieldLog, end_s: f64) -> Vec<Hole> {
+    let mut holes = Vec::new();
+    let mut all_s: Vec<f64> = Vec::new();
+    for channel in sampled() {
+        let Some(series) = log.series(channel).filter(|series| !series.is_empty()) else {
+            continue;
+        };
+        let times_s = times_s(series);
+        let (first_s, last_s) = (times_s[0], times_s[times_s.len() - 1]);
+        if first_s > HELD_MAX_S {
+            let what = format!("{channel} begins at {first_s:.1} s");
+            holes.push(Hole { span_s: [0.0, first_s], what });
+        }
+        holes.extend(pauses(&times_s, HELD_MAX_S).map(|span_s| Hole {
+            span_s,
+            what: format!("{channel} is away from {:.1} to {:.1} s", span_s[0], span_s[1]),
+        }));
+        if end_s - last_s > HELD_MAX_S {
+            let what = format!("{channel} stops at {last_s:.1} s");
+            holes.push(Hole { span_s: [last_s, end_s], what });
+        }
+        all_s.extend(times_s);
+    }
+    all_s.sort_by(f64::total_cmp);
+    holes.extend(pauses(&all_s, SILENCE_MAX_S).map(|span_s| Hole {
+        span_s,
+        what: format!("nothing was logged from {:.2} to {:.2} s", span_s[0], span_s[1]),
+    }));
+    holes
+}
+
+fn times_s(series: &Series) -> Vec<f64> {
+    series.iter().map(|(at_s, _)| at_s).collect()
+}
+
+/// Where two of `times_s` that follow one another are more than `most_s` apart.
+fn pauses(times_s: &[f64], most_s: f64) -> impl Iterator<Item = [f64; 2]> {
+    let pairs = times_s.windows(2).map(|pair| [pair[0], pair[1]]);
+    pairs.filter(move |[before_s, after_s]| after_s - before_s > most_s)
 }

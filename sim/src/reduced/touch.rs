@@ -90,13 +90,15 @@ impl Search {
         for part in hull {
             let centre = pose.frame[frame].point(part.centre_m.into());
             let world = (state.position + centre).to_array();
+            let speed_m_s = velocity_at(twist, centre).length();
+            let ahead_m = ahead_m(&HULL, speed_m_s, dt_s);
             let mut gap_m = CLEARANCE_MAX_M;
-            self.terrain.each_minimum(world, part.radius_m + clear_m, |nearest| {
+            // However deep another part is in the ground, this one may touch it too.
+            self.terrain.each_minimum(world, part.radius_m + clear_m.max(ahead_m), |nearest| {
                 gap_m = gap_m.min(nearest.distance_m - part.radius_m);
             });
             clear_m = clear_m.min(gap_m);
-            let speed_m_s = velocity_at(twist, centre).length();
-            if gap_m <= ahead_m(&HULL, speed_m_s, dt_s) {
+            if gap_m <= ahead_m {
                 let ball =
                     Ball { body: Body::Frame(frame), centre, radius_m: part.radius_m, speed_m_s };
                 self.add(&ball, state.position, &HULL, None, dt_s, found);

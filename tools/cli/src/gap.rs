@@ -9,6 +9,7 @@ mod r#where;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use xt28_gap::GapError;
 
 use crate::{Failure, Verdict};
 
@@ -38,8 +39,26 @@ impl Gap {
     }
 }
 
-/// What speaks of `logs`, where anything does: `given`, or about.toml beside the first.
-fn about(logs: &[PathBuf], given: Option<&PathBuf>) -> Option<PathBuf> {
+/// What speaks of `logs`, where anything does: `given`, or about.toml beside them.
+///
+/// # Errors
+/// [`GapError::OtherFolder`] where about.toml lies beside the first and others lie elsewhere: it knows files by
+/// their names alone, and each day's run-1 has the same.
+fn about(logs: &[PathBuf], given: Option<&PathBuf>) -> Result<Option<PathBuf>, GapError> {
+    if given.is_some() {
+        return Ok(given.cloned());
+    }
+    let folder_of = |log: &Path| {
+        let folder = log.parent().unwrap_or(Path::new("")).join(".");
+        folder.canonicalize().unwrap_or(folder)
+    };
     let beside = logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
-    given.cloned().or_else(|| beside.exists().then_some(beside))
+    if !beside.exists() {
+        return Ok(None);
+    }
+    let folder = folder_of(&logs[0]);
+    match logs.iter().find(|log| folder_of(log) != folder) {
+        Some(log) => Err(GapError::OtherFolder { about: beside, log: log.clone() }),
+        None => Ok(Some(beside)),
+    }
 }

@@ -233,6 +233,28 @@ fn a_log_that_nothing_speaks_of_needs_its_ground_told() {
     }
 }
 
+#[test]
+fn what_lies_beside_one_days_logs_speaks_of_no_other_days() {
+    let folder = tempfile::tempdir().unwrap();
+    let days = ["monday", "tuesday"].map(|day| folder.path().join(day));
+    let [first, other] = days.each_ref().map(|day| {
+        fs::create_dir(day).unwrap();
+        let copy = path(day, "run-1.log");
+        fs::copy(log(), &copy).unwrap();
+        copy
+    });
+    let about = path(&days[0], "about.toml");
+    let known =
+        "case = \"monday\"\n[[run]]\nfile = \"run-1.log\"\nterrain = \"flat\"\nfit = true\n";
+    fs::write(&about, known).unwrap();
+    let talk = refusal(&[&first, &other]);
+    assert!(talk.contains("about.toml lies beside the first log"), "{talk}");
+    assert!(talk.contains("tuesday") && talk.contains("--about"), "{talk}");
+    // Said outright it is for all; that both are one log is then found.
+    let talk = refusal(&[&first, &other, "--about", &about]);
+    assert!(talk.contains("the same log as"), "{talk}");
+}
+
 /// Whether a refusal of `outputs` says `words` and leaves the log and its database as they were.
 fn assert_kept(outputs: &[&str], files: [&str; 2], words: &str) {
     let [log, dbc] = files;

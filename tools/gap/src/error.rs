@@ -174,6 +174,16 @@ pub enum GapError {
         /// The log's file name.
         log: String,
     },
+    /// Logs of several folders, and what was found beside the first speaks of the first's folder alone.
+    #[error(
+        "{about} lies beside the first log and {log} elsewhere, so it would be given another day's ground; say --about FILE with a [[run]] for each, or give runs of one folder"
+    )]
+    OtherFolder {
+        /// The file found.
+        about: PathBuf,
+        /// The first log that lies elsewhere.
+        log: PathBuf,
+    },
     /// A command of the log is none that this bench's bus can say.
     #[error("{log}: command at {at_s:.3} s: {problem}; check its unit and scale in the mapping")]
     Command {

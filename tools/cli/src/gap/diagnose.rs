@@ -30,7 +30,7 @@ use crate::{Failure, Verdict};
 /// RUN is a file name with or without its ending, a scenario of about.toml, or a number: of a log in the
 /// order given, or that in run-3-mixed.log; one that may be either is refused. --fit alone holds out all
 /// other runs, --held alone fits on all others; with both, runs that neither names are left out. Without
-/// --fit and --held, about.toml says what is fitted on; without it a third is held out, the last
+/// --fit and --held, about.toml says what is fitted on; without it at most a third is held out, the last
 /// runs that show no effect the others do not.
 #[derive(Args)]
 pub(crate) struct Diagnose {
@@ -125,7 +125,7 @@ impl Diagnose {
             ("--overlay", self.overlay.as_ref()),
         ]);
         let files = [&self.mapping, &self.machine, &self.effects, &self.terrain];
-        let about = about(&self.logs, self.about.as_ref());
+        let about = about(&self.logs, self.about.as_ref())?;
         let known = files.into_iter().flatten().chain([&self.dbc]).chain(&about);
         outputs.ensure_apart(self.logs.iter().chain(known).map(PathBuf::as_path))
     }
@@ -138,7 +138,7 @@ impl Diagnose {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let believed =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let about = about(&self.logs, self.about.as_ref());
+        let about = about(&self.logs, self.about.as_ref())?;
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let choice = set.choose(&self.fit, &self.held)?;
@@ -155,7 +155,7 @@ impl Diagnose {
     }
 
     /// Says what to drive next, and writes it: what tells likely causes apart or, where nothing does,
-    /// what shows most that these logs do not.
+    /// what shows most that the runs fitted do not.
     fn look_ahead(&self, inquiry: &Inquiry, diagnosis: &mut Diagnosis) -> Result<(), Failure> {
         diagnosis.looked_ahead = true;
         let apart = next_drive(inquiry, diagnosis)?;
@@ -173,7 +173,7 @@ impl Diagnose {
             format!("tells apart {}", next.separates.join(", "))
         } else {
             diagnosis.notes.push(format!("{NOTHING_APART}."));
-            "tests what no log did".to_owned()
+            "tests what no run that was fitted did".to_owned()
         };
         diagnosis.next = Some(next);
         let Some(path) = &self.next else { return Ok(()) };
@@ -182,7 +182,7 @@ impl Diagnose {
 
     /// What the report is about.
     fn subject(&self) -> Result<Subject, Failure> {
-        let Some(path) = about(&self.logs, self.about.as_ref()) else {
+        let Some(path) = about(&self.logs, self.about.as_ref())? else {
             let name = self.logs[0].file_name().unwrap_or_default();
             return Ok(Subject { name: name.to_string_lossy().into_owned(), date: String::new() });
         };

@@ -70,7 +70,7 @@ impl Where {
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
-        let about = about(&self.logs, self.about.as_ref());
+        let about = about(&self.logs, self.about.as_ref())?;
         let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let machine_file = self.machine.as_deref();

@@ -252,7 +252,7 @@ pub struct Next {
     /// How well it tells them apart: expected logarithm of the odds, nats; `null` in JSON where it is for
     /// what it tests alone.
     pub nats: Option<f64>,
-    /// Effects that these logs do not test, or not at every wheel, and that it would.
+    /// Effects that the runs fitted do not test, or not at every wheel, and that it would.
     pub tests: Vec<&'static str>,
     /// The other manoeuvres, best first: those that no run is of or, where it is for what it tests alone,
     /// those that test something too.
@@ -266,7 +266,7 @@ pub struct Drive {
     pub manoeuvre: String,
     /// How well it tells apart: expected logarithm of the odds, nats; `null` in JSON as in [`Next`].
     pub nats: Option<f64>,
-    /// Effects that these logs do not test, or not at every wheel, and that it would.
+    /// Effects that the runs fitted do not test, or not at every wheel, and that it would.
     pub tests: Vec<&'static str>,
 }
 

@@ -12,7 +12,7 @@ pub(super) fn purpose(next: &Next, joined_by: &str) -> String {
         let rivals: Vec<&str> = next.separates.iter().map(name).collect();
         format!("tells {} apart", rivals.join(joined_by))
     } else {
-        format!("would test {} that these logs do not", effects(next.tests.len()))
+        format!("would test {} that the runs fitted do not", effects(next.tests.len()))
     }
 }
 
@@ -65,7 +65,7 @@ mod tests {
     #[test]
     fn a_drive_that_tells_nothing_apart_says_what_it_tests() {
         let next = next(None);
-        assert_eq!(purpose(&next, ", "), "would test 2 effects that these logs do not");
+        assert_eq!(purpose(&next, ", "), "would test 2 effects that the runs fitted do not");
         assert_eq!(how_well(&next), "");
         assert_eq!(after_that(&next), "next best: straight (an effect)");
     }

@@ -84,7 +84,7 @@ impl RunSet {
         let why = if runs.len() < 2 {
             "there is only one run, so nothing is held out to judge a cause on"
         } else {
-            "nobody said which: a third is held out, the last that show no effect the others do not"
+            "nobody said which: at most a third is held out, the last that show no effect the others do not"
         };
         let uses = (0..runs.len()).map(used).collect();
         Choice { uses, why: why.to_owned(), is_advised: false }

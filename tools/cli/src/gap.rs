@@ -48,15 +48,15 @@ fn about(logs: &[PathBuf], given: Option<&PathBuf>) -> Result<Option<PathBuf>, G
     if given.is_some() {
         return Ok(given.cloned());
     }
-    let folder_of = |log: &Path| {
-        let folder = log.parent().unwrap_or(Path::new("")).join(".");
-        folder.canonicalize().unwrap_or(folder)
-    };
-    let beside = logs[0].parent().unwrap_or(Path::new("")).join("about.toml");
+    let beside = logs[0].with_file_name("about.toml");
     if !beside.exists() {
         return Ok(None);
     }
-    let folder = folder_of(&logs[0]);
+    let folder_of = |log: &Path| {
+        let folder = log.with_file_name(".");
+        folder.canonicalize().unwrap_or(folder)
+    };
+    let folder = folder_of(&beside);
     match logs.iter().find(|log| folder_of(log) != folder) {
         Some(log) => Err(GapError::OtherFolder { about: beside, log: log.clone() }),
         None => Ok(Some(beside)),

@@ -212,6 +212,11 @@ fn wheels_in_another_order_are_named_and_not_put_in_order() {
     assert!(talk.contains("wheels look swapped"), "{talk}");
     assert!(talk.contains("the stroke of FL follows the target of FR"), "{talk}");
     assert!(talk.contains("the stroke of FR follows the target of FL"), "{talk}");
+    // The map is drawn all the same, and says so.
+    let output = xt28(&["gap", "where", &log(), "--dbc", DBC, "--mapping", &mapping]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_ne!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("wheels look swapped"), "{talk}");
 }
 
 #[test]

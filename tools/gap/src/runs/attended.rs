@@ -1,8 +1,8 @@
 //! The part of a log in which everything that a diagnosis reads is there: what a message that begins late,
 //! stops early or stays away held meanwhile was not measured, and says nothing of the machine.
 
+use crate::FieldLog;
 use crate::diagnosis::sampled;
-use crate::{FieldLog, Series};
 
 /// How long a value may be held, s: the slowest message that is read comes ten times a second.
 const HELD_MAX_S: f64 = 1.0;
@@ -25,40 +25,33 @@ pub(super) fn attended(log: FieldLog) -> (FieldLog, Option<String>) {
         return (log, None);
     }
     holes.sort_by(|a, b| a.span_s[0].total_cmp(&b.span_s[0]));
-    let (mut best_s, mut bounds) = ([0.0, 0.0], (None, None));
+    let (mut best_s, mut bounds) = ([0.0, 0.0], [None; 2]);
     let (mut from_s, mut before) = (0.0, None);
-    for hole in &holes {
-        let [begins_s, ends_s] = hole.span_s;
-        if begins_s - from_s > best_s[1] - best_s[0] {
-            (best_s, bounds) = ([from_s, begins_s], (before, Some(hole)));
+    for hole in holes.iter().map(Some).chain([None]) {
+        let to_s = hole.map_or(end_s, |hole| hole.span_s[0]);
+        if to_s - from_s > best_s[1] - best_s[0] {
+            (best_s, bounds) = ([from_s, to_s], [before, hole]);
         }
-        if ends_s > from_s {
-            (from_s, before) = (ends_s, Some(hole));
+        if let Some(ends_s) = hole.map(|hole| hole.span_s[1]).filter(|ends_s| *ends_s > from_s) {
+            (from_s, before) = (ends_s, hole);
         }
     }
-    if end_s - from_s > best_s[1] - best_s[0] {
-        (best_s, bounds) = ([from_s, end_s], (before, None));
-    }
-    let why = [bounds.0, bounds.1].into_iter().flatten().map(|hole| hole.what.as_str());
+    let why: Vec<&str> = bounds.into_iter().flatten().map(|hole| hole.what.as_str()).collect();
+    let (name, why, [from_s, to_s]) = (log.name(), why.join(" and "), best_s);
     let note = format!(
-        "{}: {} of a log of {end_s:.1} s; only {:.1} to {:.1} s of it are looked at.",
-        log.name(),
-        why.collect::<Vec<_>>().join(" and "),
-        best_s[0],
-        best_s[1],
+        "{name}: {why} of a log of {end_s:.1} s; only {from_s:.1} to {to_s:.1} s of it are looked at."
     );
     (log.within(best_s), Some(note))
 }
 
+/// Where something that is read was not measured, a channel after the other.
 fn holes(log: &FieldLog, end_s: f64) -> Vec<Hole> {
     let mut holes = Vec::new();
     let mut all_s: Vec<f64> = Vec::new();
     for channel in sampled() {
-        let Some(series) = log.series(channel).filter(|series| !series.is_empty()) else {
-            continue;
-        };
-        let times_s = times_s(series);
-        let (first_s, last_s) = (times_s[0], times_s[times_s.len() - 1]);
+        let Some(series) = log.series(channel) else { continue };
+        let times_s: Vec<f64> = series.iter().map(|(at_s, _)| at_s).collect();
+        let (Some(&first_s), Some(&last_s)) = (times_s.first(), times_s.last()) else { continue };
         if first_s > HELD_MAX_S {
             let what = format!("{channel} begins at {first_s:.1} s");
             holes.push(Hole { span_s: [0.0, first_s], what });
@@ -79,10 +72,6 @@ fn holes(log: &FieldLog, end_s: f64) -> Vec<Hole> {
         what: format!("nothing was logged from {:.2} to {:.2} s", span_s[0], span_s[1]),
     }));
     holes
-}
-
-fn times_s(series: &Series) -> Vec<f64> {
-    series.iter().map(|(at_s, _)| at_s).collect()
 }
 
 /// Where two of `times_s` that follow one another are more than `most_s` apart.

@@ -17,6 +17,7 @@ mod power;
 mod receiver;
 mod sensor_faults;
 mod truth;
+mod unheard;
 mod wires;
 mod wiring;
 
@@ -27,6 +28,7 @@ pub use operator::{Operator, OperatorError};
 pub use power::{EcuName, PowerEvent, PowerKind};
 pub use sensor_faults::{FaultKind, Sensor, SensorFault, WheelName};
 pub use truth::{TRUTH_HEADER, write_truth_row};
+pub use unheard::UnheardEffect;
 pub use wires::{UnknownWire, Wire};
 pub use xt28_ecus::Profile;
 pub use xt28_ecus::firmware_2016::Quirks;

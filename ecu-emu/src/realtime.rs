@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ecu_emu::{
-    Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, Wire, write_truth_row,
+    Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, UnheardEffect, Wire,
+    write_truth_row,
 };
 use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Outbox;
@@ -99,7 +100,12 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     let mut config = EmulatorConfig::new(machine, terrain, args.seed);
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
     if let Some(path) = &args.effects {
-        config.effects = Overlay::load(path)?.effects(&config.machine)?;
+        let overlay = Overlay::load(path)?;
+        for entry in &overlay.entries {
+            UnheardEffect::check(args.profile, entry.effect)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+        }
+        config.effects = overlay.effects(&config.machine)?;
     }
     if let Some(path) = &args.mishaps {
         config.mishaps = Mishaps::load(path)?;

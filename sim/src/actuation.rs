@@ -32,4 +32,23 @@ impl Actuation {
             brake_released: true,
         }
     }
+
+    /// What the machine does of it: no spool and no swash plate goes beyond its stop, no engine turns
+    /// backwards, and what is no number moves nothing: springs bring a spool to its middle.
+    #[must_use]
+    pub fn saturated(&self) -> Self {
+        let within = |value: f64, least: f64| match value.is_nan() {
+            true => 0.0,
+            false => value.clamp(least, 1.0),
+        };
+        let engine = self.engine_speed_rpm;
+        Self {
+            arm_opening: self.arm_opening.map(|opening| within(opening, -1.0)),
+            steer_opening: self.steer_opening.map(|opening| within(opening, -1.0)),
+            pump_displacement: self.pump_displacement.map(|pump| within(pump, -1.0)),
+            motor_displacement: self.motor_displacement.map(|motor| within(motor, 0.0)),
+            engine_speed_rpm: if engine.is_finite() { engine.max(0.0) } else { 0.0 },
+            ..*self
+        }
+    }
 }

@@ -134,6 +134,8 @@ pub struct Motion {
     pub arm: PerWheel<HingeMotion>,
     /// Front and rear articulation joint; left > 0.
     pub joint: [HingeMotion; 2],
+    /// The machine's rear against its front about the roll hinge, where it has one; right side high > 0.
+    pub roll_hinge: HingeMotion,
     /// Wheels about their axles, against their arms, rad/s; forward > 0.
     pub wheel_rate_rad_s: PerWheel<f64>,
     /// Origin of the front frame in the world, m. A solver's world has the ground's axes: where the

@@ -84,6 +84,7 @@ impl Bodies for ReducedBodies {
         Motion {
             arm: PerWheel(core::array::from_fn(|i| hinge(s.arm_rad[i], ARMS + i))),
             joint: core::array::from_fn(|i| hinge(s.joint_rad[i], JOINTS + i)),
+            roll_hinge: HingeMotion { angle_rad: -s.roll_rad, rate_rad_s: -s.rate[ROLL] },
             wheel_rate_rad_s: PerWheel(core::array::from_fn(|i| s.rate[WHEELS + i])),
             position_m: s.position.to_array(),
             axes: DVec3::AXES.map(|axis| (s.turn * axis).to_array()),
@@ -116,14 +117,16 @@ impl Bodies for ReducedBodies {
 }
 
 impl Placed for ReducedBodies {
-    /// What no motion tells is as in a machine that stands on level ground: no roll in the roll hinge.
     fn place(&mut self, motion: &Motion) {
         let [x, y, z] = motion.axes.map(DVec3::from);
         let s = &mut self.state;
         s.position = motion.position_m.into();
         s.turn = DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize();
         s.joint_rad = motion.joint.map(|joint| joint.angle_rad);
-        s.roll_rad = 0.0;
+        // Of a machine without the hinge, whatever is said of it: the tree has no freedom there.
+        let roll =
+            if self.tree.roll.is_some() { motion.roll_hinge } else { HingeMotion::default() };
+        s.roll_rad = -roll.angle_rad;
         s.arm_rad = motion.arm.map(|arm| arm.angle_rad).0;
         let turning = DVec3::from(motion.rate_rad_s);
         let com = s.turn * self.tree.frames[0].com;
@@ -131,6 +134,7 @@ impl Placed for ReducedBodies {
         let moving = DVec3::from(motion.velocity_m_s) - turning.cross(com);
         s.rate = [0.0; FREEDOMS];
         s.rate[..6].copy_from_slice(&spatial::join(turning, moving));
+        s.rate[ROLL] = -roll.rate_rad_s;
         for i in 0..2 {
             s.rate[JOINTS + i] = motion.joint[i].rate_rad_s;
         }

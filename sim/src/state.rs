@@ -29,6 +29,11 @@ pub struct VehicleState {
     pub joint_rad: [f64; 2],
     /// Rates of the joints, rad/s.
     pub joint_rate_rad_s: [f64; 2],
+    /// Angle of the machine's rear against its front about the roll hinge, rad; right side high > 0, zero
+    /// where there is none.
+    pub roll_hinge_rad: f64,
+    /// Rate of the roll hinge, rad/s.
+    pub roll_hinge_rate_rad_s: f64,
     /// Pump pressures 1A 1B 2A 2B, Pa.
     pub pump_pressure_pa: [f64; 4],
     /// Engine speed, rpm.

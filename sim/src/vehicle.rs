@@ -112,6 +112,8 @@ impl<B: Bodies> Vehicle<B> {
         self.actuators.observe(m, s);
         s.joint_rad = m.joint.map(|joint| joint.angle_rad);
         s.joint_rate_rad_s = m.joint.map(|joint| joint.rate_rad_s);
+        s.roll_hinge_rad = m.roll_hinge.angle_rad;
+        s.roll_hinge_rate_rad_s = m.roll_hinge.rate_rad_s;
         s.wheel_speed_rad_s = m.wheel_rate_rad_s;
         s.ground_force_n = m.ground_force_n;
         s.chassis_force_n = m.chassis_force_n;
@@ -135,7 +137,8 @@ impl<B: Bodies> Vehicle<B> {
 
 impl<B: Bodies> Plant for Vehicle<B> {
     fn step(&mut self, actuation: &Actuation) {
-        let loads = self.actuators.step(actuation, &self.motion, &mut self.state, self.step_s);
+        let loads =
+            self.actuators.step(&actuation.saturated(), &self.motion, &mut self.state, self.step_s);
         self.bodies.advance(&loads, self.step_s);
         let before_m_s = self.imu_velocity_m_s(&self.motion);
         self.motion = self.bodies.motion();

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use ecu_emu::{Mishaps, Profile, Quirks, SensorFault};
+use ecu_emu::{Mishaps, Profile, Quirks, SensorFault, UnheardEffect};
 use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
@@ -164,6 +164,16 @@ impl Scenario {
                 "needs profile = \"2016\": no cab is heard otherwise".into(),
             );
         }
+        let mut unheard = self.effects.iter().map(|e| UnheardEffect::check(self.profile, e.effect));
+        if let Some(Err(error)) = unheard.find(Result::is_err) {
+            let named = format!("\"{}\"", error.effect);
+            let line = 1 + text.lines().position(|line| line.contains(&named)).unwrap_or(0);
+            return Err(ScenarioError::Value {
+                path: path.to_owned(),
+                line,
+                problem: error.to_string(),
+            });
+        }
         if let Some((name, problem)) = sense::problem(text, self.duration_s) {
             let (path, line) = (path.to_owned(), line_of(text, &name));
             let problem = format!("{name}: {problem}");
@@ -281,7 +291,9 @@ stands-still = { below_m_s = 0.02 }
             (Profile::Firmware2016, Quirks::firmware())
         );
         assert_eq!(scenario.cab.unwrap().text, ACTION);
+        let unheard = "2016\"\neffect = [{ name = \"steer-gain\", kp_factor = 0.5 }]\n#";
         let refusals = [
+            (parse(unheard, ACTION), "a/ramp.toml:7: \"steer-gain\" acts in loops"),
             (parse("paper", ACTION), "a/ramp.toml:7: operator needs profile = \"2016\""),
             (parse("2016", "[[action]]\n"), "a/ramp.toml:7: a/cab.toml:1: missing field `at_s`"),
             (parse("2016\"\nquirks = { x = true }\n#", ACTION), "a/ramp.toml:7: no oddity \"x\""),

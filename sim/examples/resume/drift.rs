@@ -31,6 +31,13 @@ pub(crate) struct Drift {
     pub after_5_s: Distance,
 }
 
+/// The machine with its front free to roll, as its file describes it.
+pub(crate) fn with_roll_hinge() -> Machine {
+    let mut machine = Machine::xt28();
+    machine.vehicle.roll_hinge = true;
+    machine
+}
+
 /// What is asked of the machine, s after its start.
 fn actuation(t_s: f64) -> Actuation {
     Actuation {
@@ -42,11 +49,11 @@ fn actuation(t_s: f64) -> Actuation {
 }
 
 /// The vehicle after `at_s` s of driving, and its ground.
-pub(crate) fn drive<B: Bodies>(at_s: f64) -> (Vehicle<B>, Terrain) {
+pub(crate) fn drive<B: Bodies>(machine: &Machine, at_s: f64) -> (Vehicle<B>, Terrain) {
     let ramp = Ramp { x_m: [1.0, 3.0, 5.0, 7.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
     let terrain = Terrain::ramp(&ramp);
-    let (machine, effects) = (Machine::xt28(), Effects::default());
-    let mut vehicle = Vehicle::with(&machine, &effects, &terrain, PerWheel::splat(0.17), STEP);
+    let effects = Effects::default();
+    let mut vehicle = Vehicle::with(machine, &effects, &terrain, PerWheel::splat(0.17), STEP);
     let steps = (at_s / STEP.as_secs_f64()).round() as u32;
     (0..steps).for_each(|step| vehicle.step(&actuation(seconds(step))));
     (vehicle, terrain)
@@ -57,10 +64,10 @@ fn seconds(step: u32) -> f64 {
 }
 
 impl Drift {
-    /// Resumed from the state at `at_s`, and both driven on.
-    pub(crate) fn of<B: Placed>(at_s: f64, warm: Duration) -> Self {
-        let (mut vehicle, terrain) = drive::<B>(at_s);
-        let mut resumed: Vehicle<B> = Self::resumed(vehicle.state(), &terrain, at_s, warm);
+    /// `machine` resumed from its state at `at_s`, and both driven on.
+    pub(crate) fn of<B: Placed>(machine: &Machine, at_s: f64, warm: Duration) -> Self {
+        let (mut vehicle, terrain) = drive::<B>(machine, at_s);
+        let mut resumed: Vehicle<B> = Self::resumed(machine, vehicle.state(), &terrain, at_s, warm);
         let (mut drift, mut seen) = (Self::default(), Distance::default());
         for step in 0..1000 {
             let now = actuation(at_s + seconds(step));
@@ -75,16 +82,16 @@ impl Drift {
         drift
     }
 
-    /// A vehicle taken up at `measured`, `at_s` s after the start.
+    /// A `machine` taken up at `measured`, `at_s` s after the start.
     pub(crate) fn resumed<B: Placed>(
+        machine: &Machine,
         measured: &VehicleState,
         terrain: &Terrain,
         at_s: f64,
         warm: Duration,
     ) -> Vehicle<B> {
-        let (machine, effects) = (Machine::xt28(), Effects::default());
-        let now = actuation(at_s);
-        Vehicle::from_measured(&machine, &effects, terrain, STEP, measured, &now, warm)
+        let (effects, now) = (Effects::default(), actuation(at_s));
+        Vehicle::from_measured(machine, &effects, terrain, STEP, measured, &now, warm)
     }
 }
 

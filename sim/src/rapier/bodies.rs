@@ -94,6 +94,9 @@ impl Bodies for RapierBodies {
             // The engine counts the turn of the frame behind, which goes right when the machine
             // bends left.
             joint: self.joints.map(|hinge| signed(self.hinge_motion(hinge), -1.0)),
+            roll_hinge: self.roll.map_or_else(HingeMotion::default, |(hinge, _)| {
+                signed(self.hinge_motion(hinge), -1.0)
+            }),
             wheel_rate_rad_s: PerWheel::from_fn(|w| self.spins[w].against(self.arm_rad_s(w))),
             position_m: wide(*body.position() * -self.front_com),
             axes: [Vector::X, Vector::Y, Vector::Z].map(|axis| wide(*body.rotation() * axis)),
@@ -135,6 +138,9 @@ impl Placed for RapierBodies {
         };
         for (i, joint) in self.joints.into_iter().enumerate() {
             hinge(joint, motion.joint[i], -1.0);
+        }
+        if let Some((roll, _)) = self.roll {
+            hinge(roll, motion.roll_hinge, -1.0);
         }
         for wheel in Wheel::ALL {
             hinge(self.arm_hinges[wheel], motion.arm[wheel], self.extends[wheel]);

@@ -96,6 +96,22 @@ fn a_signal_that_was_not_recorded_is_named_with_its_message() {
     }
 }
 
+/// Its wheel loads are worked out from the cylinders'; a replay alone compares those that a log has.
+#[test]
+fn a_log_without_wheel_loads_is_looked_at_as_one_with_them() {
+    let ids = ["WheelForceFront", "WheelForceMidRear"].map(|name| format!(" {}#", id(name)));
+    let (_with, with) = changed(|at_s, rest| Some((at_s, rest.to_owned())));
+    let (_without, without) = changed(|at_s, rest| {
+        (!ids.iter().any(|id| rest.contains(id))).then(|| (at_s, rest.to_owned()))
+    });
+    assert!(fs::metadata(&without).unwrap().len() < fs::metadata(&with).unwrap().len());
+    let where_of = |log: &str| xt28(&["gap", "where", log, "--dbc", DBC]);
+    let [with, without] = [where_of(&with), where_of(&without)];
+    assert_ne!(without.status.code(), Some(2), "{}", String::from_utf8_lossy(&without.stderr));
+    assert!(!with.stdout.is_empty());
+    assert_eq!(without.stdout, with.stdout);
+}
+
 #[test]
 fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     let heard_of = |message: &str, from_s: f64, to_s: f64| {

@@ -70,11 +70,21 @@ impl About {
     /// Reads `text`; `path` names it in errors.
     ///
     /// # Errors
-    /// [`GapError::Toml`], also for a ramp without its stations or stations without a ramp.
+    /// [`GapError::Toml`], also for a ramp without its stations, stations without a ramp, or two
+    /// descriptions of one file.
     pub fn parse(text: &str, path: &Path) -> Result<Self, GapError> {
         let refuse = |(line, problem)| GapError::Toml { path: path.to_owned(), line, problem };
         let about: Self = toml::from_str(text).map_err(|error| refuse(locate(text, &error)))?;
-        for run in &about.run {
+        for (i, run) in about.run.iter().enumerate() {
+            if about.run[..i].iter().any(|before| before.file == run.file) {
+                let lines = text.lines().enumerate().filter(|(_, line)| line.contains(&run.file));
+                let line = lines.map(|(line, _)| line + 1).nth(1).unwrap_or(1);
+                let problem = format!(
+                    "run {} is described twice; which ground is it? keep one of the two [[run]]",
+                    run.file
+                );
+                return Err(refuse((line, problem)));
+            }
             if let Err(problem) = run.terrain() {
                 let line = text.lines().position(|line| line.contains(&run.file));
                 let problem = format!("run {}: {problem}", run.file);
@@ -170,6 +180,9 @@ ramp = { x_m = [4, 7, 8.5, 11.5], height_m = 0.3, y_min_m = -1.9, y_max_m = -0.5
         assert!(error.starts_with("about.toml:6:") && error.contains("swamp"), "{error}");
         let error = parse(&ABOUT.replace("\"flat\"", "\"ramp\"")).unwrap_err().to_string();
         assert!(error.contains("needs ramp"), "{error}");
+        let twice = ABOUT.replace("ramp.log\"", "flat.log.gz\"");
+        let error = parse(&twice).unwrap_err().to_string();
+        assert!(error.starts_with("about.toml:9: run flat.log.gz is described twice"), "{error}");
     }
 
     proptest! {

@@ -179,7 +179,6 @@ impl Channel {
     pub const fn need(self) -> Need {
         match self {
             Self::Stroke(_)
-            | Self::WheelLoad(_)
             | Self::WheelSpeed(_)
             | Self::FrontJoint
             | Self::RearJoint

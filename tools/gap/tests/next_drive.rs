@@ -100,12 +100,14 @@ fn what_no_log_tests_asks_for_the_drive_that_tests_most_of_it() {
         lacking("steer-lag", "s-turn"),
         lacking("steer-delay", "s-turn"),
     ];
-    let (next, manoeuvre) =
-        untested_drive(&Diagnosis { not_testable, ..diagnosis(Vec::new()) }).unwrap();
+    let lacks = Diagnosis { not_testable, ..diagnosis(Vec::new()) };
+    let (next, manoeuvre) = untested_drive(&inquiry(), &lacks).unwrap();
     assert_eq!((next.manoeuvre.as_str(), manoeuvre.name), ("s-turn", "s-turn"));
     assert_eq!(next.tests, ["steer-lag", "steer-delay"]);
     assert!(next.separates.is_empty() && next.nats.is_none(), "it is not for that");
     let [other] = &next.others[..] else { panic!("one other tests something") };
     assert_eq!((other.manoeuvre.as_str(), &other.tests[..]), ("single-arm", &["valve-lag"][..]));
-    assert!(untested_drive(&diagnosis(Vec::new())).is_none(), "all is tested");
+    assert!(untested_drive(&inquiry(), &diagnosis(Vec::new())).is_none(), "all is tested");
+    let (next, _) = untested_drive(&inquiry_of(&["run-2-s_turn.log.gz"]), &lacks).unwrap();
+    assert_eq!(next.manoeuvre, "single-arm", "the s-turn was driven, if held out");
 }

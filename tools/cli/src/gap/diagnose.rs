@@ -147,7 +147,7 @@ impl Diagnose {
         let remarks = remarks(&set, &given)?;
         let left: Vec<String> = left_out(&set, &choice);
         let mut inquiry = set.into_inquiry(machine, &choice, self.accept_wheel_order)?;
-        let mut notes = vec![split(&inquiry, &left, &choice.why)];
+        let mut notes = vec![split(&inquiry, &left, &choice)];
         notes.extend(remarks);
         inquiry.believed = believed.effects(&inquiry.machine)?;
         inquiry.how_far = !self.no_how_far;
@@ -160,11 +160,11 @@ impl Diagnose {
         diagnosis.looked_ahead = true;
         let apart = next_drive(inquiry, diagnosis)?;
         let is_apart = apart.is_some();
-        let Some((next, manoeuvre)) = apart.or_else(|| untested_drive(diagnosis)) else {
+        let Some((next, manoeuvre)) = apart.or_else(|| untested_drive(inquiry, diagnosis)) else {
             let unwritten =
                 self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
             diagnosis.notes.push(format!(
-                "{NOTHING_APART}, and no effect is untested.{}",
+                "{NOTHING_APART}, and no drive that was not made would test more.{}",
                 unwritten.unwrap_or_default()
             ));
             return Ok(());
@@ -225,7 +225,7 @@ fn left_out(set: &RunSet, choice: &Choice) -> Vec<String> {
 }
 
 /// Which runs were fitted on, and who chose so.
-fn split(inquiry: &Inquiry, left: &[String], why: &str) -> String {
+fn split(inquiry: &Inquiry, left: &[String], choice: &Choice) -> String {
     let of = |fit: bool| {
         let runs = inquiry.runs.iter().filter(|run| run.fit == fit);
         let files: Vec<String> = runs.map(FieldRun::file).collect();
@@ -233,6 +233,13 @@ fn split(inquiry: &Inquiry, left: &[String], why: &str) -> String {
     };
     let left =
         if left.is_empty() { String::new() } else { format!("; left out: {}", left.join(", ")) };
+    let none_spared =
+        !choice.is_advised && inquiry.runs.len() > 1 && inquiry.runs.iter().all(|run| run.fit);
+    let why = if none_spared {
+        "nobody said which, and each run shows an effect that no other does, so none is held out"
+    } else {
+        choice.why.as_str()
+    };
     format!("Fitted on {}; held out: {}{left} ({why}).", of(true), of(false))
 }
 

@@ -47,12 +47,8 @@ pub fn next_drive(
         return Ok(None);
     }
     let worth = |manoeuvre: Manoeuvre| Ok((worth(inquiry, &rivals, &manoeuvre)?, manoeuvre));
-    // What a drive that was made could tell, it has told.
-    let told = |run: &FieldRun| run.scenario.clone().unwrap_or_else(|| run.log.name().to_owned());
-    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(&told(run), m.name));
-    let left: Vec<Manoeuvre> = Manoeuvre::all().into_iter().filter(|m| !made(m)).collect();
     let mut ranked: Vec<(f64, Manoeuvre)> =
-        left.into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
+        not_made(inquiry).into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut ranked = ranked.into_iter();
     Ok(ranked.next().filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, best)| {
@@ -63,6 +59,13 @@ pub fn next_drive(
     }))
 }
 
+/// The manoeuvres that no run is of, fitted or held out: what a drive that was made could tell, it has told.
+fn not_made(inquiry: &Inquiry) -> Vec<Manoeuvre> {
+    let told = |run: &FieldRun| run.scenario.clone().unwrap_or_else(|| run.log.name().to_owned());
+    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(&told(run), m.name));
+    Manoeuvre::all().into_iter().filter(|m| !made(m)).collect()
+}
+
 /// A manoeuvre, with what it would test beside.
 fn drive(diagnosis: &Diagnosis, manoeuvre: &Manoeuvre, nats: Option<f64>) -> Drive {
     let untested = diagnosis.not_testable.iter().filter(|one| one.manoeuvre == manoeuvre.name);
@@ -70,11 +73,11 @@ fn drive(diagnosis: &Diagnosis, manoeuvre: &Manoeuvre, nats: Option<f64>) -> Dri
     Drive { manoeuvre: manoeuvre.name.to_owned(), nats, tests }
 }
 
-/// The manoeuvre that would show most of what the logs could not, with what it shows; `None` where they
-/// could show all.
+/// The manoeuvre of those that no run is of already that would show most of what the logs could not, with
+/// what it shows; `None` where there is none.
 #[must_use]
-pub fn untested_drive(diagnosis: &Diagnosis) -> Option<(Next, Manoeuvre)> {
-    let all = Manoeuvre::all().into_iter().map(|m| (drive(diagnosis, &m, None), m));
+pub fn untested_drive(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Option<(Next, Manoeuvre)> {
+    let all = not_made(inquiry).into_iter().map(|m| (drive(diagnosis, &m, None), m));
     let mut ranked: Vec<(Drive, Manoeuvre)> =
         all.filter(|(drive, _)| !drive.tests.is_empty()).collect();
     ranked.sort_by_key(|(drive, _)| core::cmp::Reverse(drive.tests.len()));

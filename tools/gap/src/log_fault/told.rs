@@ -22,6 +22,13 @@ pub(crate) fn told(faults: &[LogFault]) -> Vec<String> {
     lines
 }
 
+/// Messages from which on frames that all lose alike are lost where all pass.
+const MANY: usize = 5;
+/// Least share of the frames, %, of which that is said.
+const MUCH_PERCENT: f64 = 1.0;
+/// How many times the mean share a message may lose where all lose alike.
+const ALIKE: f64 = 2.0;
+
 /// What befalls all messages of a bus alike.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mishap {
@@ -52,14 +59,18 @@ struct Tally<'a> {
     of: u64,
     /// The message with the most frames: its name, how many, and of how many.
     worst: (&'a str, u64, u64),
+    /// The greatest share of its frames that any message has of it.
+    most_share: f64,
     longest_s: f64,
 }
 
 impl<'a> Tally<'a> {
     /// `None` where no message has it.
+    #[allow(clippy::cast_precision_loss)]
     fn of(faults: &'a [LogFault], mishap: Mishap) -> Option<Self> {
+        let (worst, most_share, longest_s) = (("", 0, 0), 0.0, 0.0);
         let mut tally =
-            Self { mishap, messages: 0, frames: 0, of: 0, worst: ("", 0, 0), longest_s: 0.0 };
+            Self { mishap, messages: 0, frames: 0, of: 0, worst, most_share, longest_s };
         for fault in faults {
             let Some((found, message, frames, of)) = Mishap::of(fault) else { continue };
             if found != mishap {
@@ -68,6 +79,7 @@ impl<'a> Tally<'a> {
             tally.messages += 1;
             tally.frames += frames;
             tally.of += of;
+            tally.most_share = tally.most_share.max(frames as f64 / of as f64);
             if frames > tally.worst.1 {
                 tally.worst = (message, frames, of);
             }
@@ -76,6 +88,19 @@ impl<'a> Tally<'a> {
             }
         }
         (tally.messages > 0).then_some(tally)
+    }
+
+    /// Whom to suspect of the loss: no device drops its frames as all others do theirs.
+    #[allow(clippy::cast_precision_loss)]
+    fn suspect(&self) -> &'static str {
+        let mean = self.frames as f64 / self.of as f64;
+        let alike = self.most_share <= ALIKE * mean;
+        if self.messages >= MANY && 100.0 * mean >= MUCH_PERCENT && alike {
+            "; all lose about as many, so suspect the logger or the bus before the machine: what is \
+             held looks late: record again without loss before an unknown cause is believed"
+        } else {
+            ""
+        }
     }
 
     /// What is told in place of `first` and all that are like it.
@@ -93,8 +118,9 @@ impl<'a> Tally<'a> {
         let place = format!("{}:{}", first.log, first.line);
         match self.mishap {
             Mishap::Lost => format!(
-                "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held",
-                longest_s * 1e3
+                "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held{}",
+                longest_s * 1e3,
+                self.suspect()
             ),
             Mishap::Repeated => format!(
                 "{place}: {some} are there twice, {most}; the repeats are left out, so check how the log was merged"
@@ -133,5 +159,16 @@ mod tests {
                       the most of B (9 of 100); the longest gap is 20.0 ms";
         assert!(lines[1].starts_with(wanted), "{}", lines[1]);
         assert_eq!(lines[2], faults[3].to_string(), "what befell one message is told as it is");
+    }
+    #[test]
+    fn a_loss_that_all_messages_share_is_not_laid_to_the_machine() {
+        let of = |frames: [u64; 6]| {
+            let names = ["A", "B", "C", "D", "E", "F"].into_iter().zip(frames);
+            let faults: Vec<LogFault> =
+                names.map(|(name, frames)| fault(3, dropped(name, frames))).collect();
+            told(&faults).join("\n")
+        };
+        assert!(of([5, 4, 6, 5, 5, 7]).contains("suspect the logger or the bus"));
+        assert!(!of([1, 1, 2, 1, 1, 60]).contains("suspect"), "one device's own");
     }
 }

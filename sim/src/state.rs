@@ -22,8 +22,8 @@ pub struct VehicleState {
     pub wheel_torque_nm: PerWheel<f64>,
     /// Vertical force of the ground on each wheel, N.
     pub ground_force_n: PerWheel<f64>,
-    /// Force of the ground on anything but the wheels, mean of the last step, N; above zero the machine has
-    /// grounded.
+    /// Force of the ground on the three frames, mean of the last step, N; above zero the machine has
+    /// grounded. Arms and load touch nothing: an arm lies above its wheel's axle, the load above its frame.
     pub chassis_force_n: f64,
     /// Angles of the front and the rear articulation joint, rad; left > 0.
     pub joint_rad: [f64; 2],

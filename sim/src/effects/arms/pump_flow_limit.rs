@@ -6,7 +6,8 @@ use crate::FlowSharing;
 use crate::effects::{Block, Effect, Parameter, Slot};
 
 /// Flow at which the pump never runs short, m³/s: above what all valves take when fully open. As a value
-/// it stands for a pump that never does, whatever the machine's valves take.
+/// it stands for a pump that never does, whatever the machine's valves take: beside `valve-gain` above some
+/// 1.2, valves take more than this, and a pump just below it begins with that much of a step.
 const AMPLE_M3_S: f64 = 0.012;
 /// What such a pump delivers over what all valves of another machine take (assumed).
 const AMPLE_FACTOR: f64 = 1.1;

@@ -52,7 +52,7 @@ pub struct Entry {
 #[derive(Debug, thiserror::Error)]
 pub enum OverlayError {
     /// The file could not be read.
-    #[error("{path}: cannot read the overlay: {source}; give an existing file")]
+    #[error("{path}: cannot read the overlay: {source}; give a text file that exists")]
     Read {
         /// The file.
         path: PathBuf,
@@ -105,7 +105,9 @@ impl Overlay {
         };
         let draft: Draft = toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
-            refuse(start, error.message().replace('\n', " "))
+            let problem = error.message().replace('\n', " ");
+            let single = text.get(start..).is_some_and(|rest| rest.starts_with("[effect]"));
+            refuse(start, if single { format!("{problem}; write [[effect]]") } else { problem })
         })?;
         let entry = |draft: &Spanned<BTreeMap<String, Spanned<Value>>>| {
             let table = draft.get_ref();
@@ -271,6 +273,12 @@ mod tests {
         let [again, overlay] = [again, overlay].map(|o| o.effects(&machine).unwrap());
         assert_eq!(again, overlay);
         assert_ne!(again, Effects::default());
+    }
+
+    #[test]
+    fn an_effect_in_single_brackets_is_told_of_the_double_ones() {
+        let error = parse("\n[effect]\nname = \"arm-delay\"\ndelay_s = 0.2\n").unwrap_err();
+        assert!(error.starts_with("o.toml:2:") && error.ends_with("write [[effect]]"), "{error}");
     }
 
     #[test]

@@ -17,8 +17,13 @@ struct Header {
 }
 
 impl Header {
-    /// Takes a key; false if it is none.
-    fn take(&mut self, key: &str, value: f64) -> bool {
+    /// Takes a key.
+    ///
+    /// # Errors
+    /// It is none, or it was there before: what is wrong, and what would be right.
+    fn take(&mut self, key: &str, value: f64) -> Result<(), String> {
+        let twice =
+            |before: f64| Err(format!("{key} {value}, which was {before}; keep one of the two"));
         let place = match key.to_ascii_lowercase().as_str() {
             "ncols" => &mut self.columns,
             "nrows" => &mut self.rows,
@@ -31,16 +36,21 @@ impl Header {
                 &mut self.y
             }
             "cellsize" => {
-                self.dy = Some(value);
+                if let Some(before) = self.dy.replace(value) {
+                    return twice(before);
+                }
                 &mut self.dx
             }
             "dx" => &mut self.dx,
             "dy" => &mut self.dy,
             "nodata_value" => &mut self.nodata,
-            _ => return false,
+            _ => {
+                return Err(format!(
+                    "unknown key {key}; a header has ncols, nrows, xllcorner, yllcorner, cellsize, nodata_value"
+                ));
+            }
         };
-        *place = Some(value);
-        true
+        place.replace(value).map_or(Ok(()), twice)
     }
 }
 
@@ -72,11 +82,10 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Raster, String> {
         let Some(value) = value else {
             return Err(format!("line {number}: {key} without a number; write `{key} 1.5`"));
         };
-        if !header.take(key, value) {
-            return Err(format!(
-                "line {number}: unknown key {key}; a header has ncols, nrows, xllcorner, yllcorner, cellsize, nodata_value"
-            ));
+        if let Some(more) = words.next() {
+            return Err(format!("line {number}: {key} has one number; `{more}` is one too many"));
         }
+        header.take(key, value).map_err(|problem| format!("line {number}: {problem}"))?;
         lines.next();
     }
     heights(&header, lines, bytes.len())
@@ -184,6 +193,9 @@ mod tests {
             ("5 6 7", "5 6", "ends at line 8 after 5 of 6", ""),
             ("5 6 7", "5 6 7 8", "line 8: more than the 6", ""),
             ("ncols 3", "ncols three", "line 1: ncols without a number", "`ncols 1.5`"),
+            ("ncols 3", "ncols 3 7", "line 1: ncols has one number; `7`", ""),
+            ("nrows 2", "nrows 2\nncols 4", "line 3: ncols 4, which was 3", "keep one"),
+            ("cellsize 2", "cellsize 2\ndy 3", "line 6: dy 3, which was 2", "keep one"),
             ("ncols 3\n", "", "the header has no ncols", "ncols NUMBER"),
             ("cellsize 2", "cellsize -2", "its spacing", "1 mm"),
             ("cellsize 2", "cellsise 2", "line 5: unknown key cellsise", "cellsize"),

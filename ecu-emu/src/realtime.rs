@@ -101,10 +101,8 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     config.stroke_m = PerWheel::splat(args.stroke_mm / 1000.0);
     if let Some(path) = &args.effects {
         let overlay = Overlay::load(path)?;
-        for entry in &overlay.entries {
-            UnheardEffect::check(args.profile, entry.effect)
-                .map_err(|error| format!("{}: {error}", path.display()))?;
-        }
+        UnheardEffect::check(args.profile, &overlay.entries)
+            .map_err(|error| format!("{}: {error}", path.display()))?;
         config.effects = overlay.effects(&config.machine)?;
     }
     if let Some(path) = &args.mishaps {

@@ -1,7 +1,7 @@
 //! Effects that a profile has nothing to do with: refused, as a run would show nothing of them.
 
 use xt28_ecus::Profile;
-use xt28_sim::effects::Effect;
+use xt28_sim::effects::Entry;
 
 /// Effects of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
 /// firmware of 2016 has loops of its own, and valves that follow the cab. (Loss and jitter of frames it
@@ -19,15 +19,16 @@ pub struct UnheardEffect {
 }
 
 impl UnheardEffect {
-    /// Whether ECUs of `profile` hear of `effect`.
+    /// Whether ECUs of `profile` hear of all `effects`.
     ///
     /// # Errors
-    /// They do not.
-    pub fn check(profile: Profile, effect: &Effect) -> Result<(), Self> {
-        let unheard = profile == Profile::Firmware2016;
-        match OF_THE_PAPERS_ECUS.iter().find(|name| unheard && **name == effect.name) {
-            Some(effect) => Err(Self { effect }),
-            None => Ok(()),
+    /// The first that they do not.
+    pub fn check(profile: Profile, effects: &[Entry]) -> Result<(), Self> {
+        if profile == Profile::Paper {
+            return Ok(());
         }
+        let mut names = effects.iter().map(|entry| entry.effect.name);
+        let unheard = names.find(|name| OF_THE_PAPERS_ECUS.contains(name));
+        unheard.map_or(Ok(()), |effect| Err(Self { effect }))
     }
 }

@@ -37,9 +37,8 @@ impl Actuation {
     /// backwards, and what is no number moves nothing: springs bring a spool to its middle.
     #[must_use]
     pub fn saturated(&self) -> Self {
-        let within = |value: f64, least: f64| match value.is_nan() {
-            true => 0.0,
-            false => value.clamp(least, 1.0),
+        let within = |value: f64, least: f64| {
+            if value.is_nan() { 0.0 } else { value.clamp(least, 1.0) }
         };
         let engine = self.engine_speed_rpm;
         Self {

@@ -80,6 +80,7 @@ impl Actuators {
         motion: &Motion,
         dt_s: f64,
     ) {
+        let actuation = &actuation.saturated();
         for wheel in Wheel::ALL {
             let (cylinder, _) = self.cylinder_motion(motion.arm[wheel]);
             let load_n = measured.cylinder_force_n[wheel];
@@ -120,7 +121,7 @@ impl Actuators {
             }
         }
         if held.drive {
-            let input = drive_input(actuation, motion);
+            let input = drive_input(&actuation.saturated(), motion);
             let (speed, torque) = (&measured.wheel_speed_rad_s, &measured.wheel_torque_nm);
             self.drive.reload(&mut self.shaft, &input, speed, torque);
         }
@@ -143,6 +144,7 @@ impl Actuators {
         state: &mut VehicleState,
         dt_s: f64,
     ) -> Loads {
+        let actuation = &actuation.saturated();
         let arms = self.open_arms(actuation, motion, dt_s);
         let joints_rad_s = core::array::from_fn(|i| {
             self.steering.open(&mut self.joints[i], actuation.steer_opening[i], dt_s)

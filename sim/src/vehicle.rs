@@ -137,8 +137,7 @@ impl<B: Bodies> Vehicle<B> {
 
 impl<B: Bodies> Plant for Vehicle<B> {
     fn step(&mut self, actuation: &Actuation) {
-        let loads =
-            self.actuators.step(&actuation.saturated(), &self.motion, &mut self.state, self.step_s);
+        let loads = self.actuators.step(actuation, &self.motion, &mut self.state, self.step_s);
         self.bodies.advance(&loads, self.step_s);
         let before_m_s = self.imu_velocity_m_s(&self.motion);
         self.motion = self.bodies.motion();

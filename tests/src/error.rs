@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ecu_emu::OperatorError;
+use ecu_emu::{OperatorError, UnheardEffect};
 use xt28_machine::MachineError;
 use xt28_sim::TerrainError;
 use xt28_sim::effects::OverlayError;
@@ -90,6 +90,14 @@ pub enum SetupError {
     /// An effect is none that the machine can have.
     #[error(transparent)]
     Effects(#[from] OverlayError),
+    /// An effect is none that the scenario's ECUs hear of.
+    #[error("{path}: {source}")]
+    Unheard {
+        /// The overlay.
+        path: PathBuf,
+        /// Which effect.
+        source: UnheardEffect,
+    },
 }
 
 impl ScenarioError {

@@ -164,8 +164,7 @@ impl Scenario {
                 "needs profile = \"2016\": no cab is heard otherwise".into(),
             );
         }
-        let mut unheard = self.effects.iter().map(|e| UnheardEffect::check(self.profile, e.effect));
-        if let Some(Err(error)) = unheard.find(Result::is_err) {
+        if let Err(error) = UnheardEffect::check(self.profile, &self.effects) {
             let named = format!("\"{}\"", error.effect);
             let line = 1 + text.lines().position(|line| line.contains(&named)).unwrap_or(0);
             return Err(ScenarioError::Value {

@@ -1,7 +1,8 @@
 //! A scenario made ready to run: its machine loaded, its ground built, its seed settled.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use ecu_emu::UnheardEffect;
 use gateway::policy::{self, Policy, SpecError};
 use xt28_machine::Machine;
 use xt28_sim::Solver;
@@ -47,6 +48,18 @@ impl Setup {
         let terrain = scenario.terrain.spec.build()?;
         let map = scenario.terrain.spec.build_map(&terrain)?;
         Ok(Self { scenario, machine, overlay, solver: Solver::default(), terrain, map, seed })
+    }
+
+    /// Adds the effects in the overlay at `path` to the scenario's own.
+    ///
+    /// # Errors
+    /// The file is refused, or the scenario's profile does not hear of one of them.
+    pub fn add_effects(&mut self, path: &Path) -> Result<(), SetupError> {
+        let entries = Overlay::load(path)?.entries;
+        UnheardEffect::check(self.scenario.profile, &entries)
+            .map_err(|source| SetupError::Unheard { path: path.to_owned(), source })?;
+        self.overlay.entries.extend(entries);
+        Ok(())
     }
 
     /// The policy that drives.

@@ -39,7 +39,6 @@ impl<B: Placed> Vehicle<B> {
         actuation: &Actuation,
         warm: Duration,
     ) -> Self {
-        let actuation = &actuation.saturated();
         let mut vehicle = Self::with(machine, effects, terrain, measured.stroke_m, step);
         let motion = vehicle.motion_of(measured);
         vehicle.actuators.resume(measured, actuation, &motion, vehicle.step_s);

@@ -8,7 +8,7 @@ impl<B: Placed + Send + 'static> Track for Vehicle<B> {
     fn track(&mut self, measured: &VehicleState, actuation: &Actuation) {
         let motion = self.motion_of(measured);
         let mut unseen = VehicleState::default();
-        self.actuators.step(&actuation.saturated(), &motion, &mut unseen, self.step_s);
+        self.actuators.step(actuation, &motion, &mut unseen, self.step_s);
         self.place(measured, actuation);
     }
 

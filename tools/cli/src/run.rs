@@ -7,7 +7,6 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup};
 use xt28_sim::Solver;
-use xt28_sim::effects::Overlay;
 
 use crate::artefacts::Artefacts;
 use crate::files::no_input;
@@ -68,7 +67,7 @@ impl Run {
         let mut setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
         setup.solver = self.solver;
         if let Some(path) = &self.effects {
-            setup.overlay.entries.extend(Overlay::load(path)?.entries);
+            setup.add_effects(path)?;
         }
         if let Some(record) = &self.record {
             let scenario = &setup.scenario;

@@ -34,6 +34,15 @@ fn an_unknown_scenario_is_answered_with_the_nearest() {
 }
 
 #[test]
+fn an_effect_that_the_ecus_of_a_scenario_do_not_hear_of_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[[effect]]\nname = \"steer-gain\"\nkp_factor = 0.5\n";
+    let overlay = file(&folder, "weak.toml", text);
+    let talk = refusal(&["run", "2016-bend", "--effects", &overlay]);
+    assert!(talk.contains("weak.toml: \"steer-gain\" acts in loops"), "{talk}");
+}
+
+#[test]
 fn a_missing_scenario_file_is_named() {
     let talk = refusal(&["run", "no/such.toml"]);
     assert!(talk.contains("no/such.toml: cannot read the scenario"), "{talk}");

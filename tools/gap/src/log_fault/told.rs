@@ -96,8 +96,8 @@ impl<'a> Tally<'a> {
         let mean = self.frames as f64 / self.of as f64;
         let alike = self.most_share <= ALIKE * mean;
         if self.messages >= MANY && 100.0 * mean >= MUCH_PERCENT && alike {
-            "; all lose about as many, so suspect the logger or the bus before the machine: what is \
-             held looks late: record again without loss before an unknown cause is believed"
+            "; all lose about as many, so suspect the logger or the bus before the machine. What is held \
+             looks late: record again without loss before an unknown cause is believed"
         } else {
             ""
         }
@@ -160,6 +160,7 @@ mod tests {
         assert!(lines[1].starts_with(wanted), "{}", lines[1]);
         assert_eq!(lines[2], faults[3].to_string(), "what befell one message is told as it is");
     }
+
     #[test]
     fn a_loss_that_all_messages_share_is_not_laid_to_the_machine() {
         let of = |frames: [u64; 6]| {

@@ -43,6 +43,10 @@ const STRIDE: usize = 10;
 /// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors.
 const STANDING: [&str; 3] = ["imu-offset", "seal-stiction", "standstill-drag"];
 
+/// Effects that show in how the wheels roll, beside the receiver's.
+const ROLLING: [&str; 4] =
+    ["slippery-ground", "soft-tyres", "standstill-drag", "wheel-speed-scale"];
+
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Generator {
@@ -114,10 +118,7 @@ impl Generator {
                     || name.starts_with("pressure-")
                     || name.starts_with("stroke-")
             }
-            Self::Travel => {
-                ["slippery-ground", "soft-tyres", "wheel-speed-scale"].contains(&name)
-                    || name.starts_with("gnss-")
-            }
+            Self::Travel => ROLLING.contains(&name) || name.starts_with("gnss-"),
             Self::Bus => effect.block == Block::Bus,
         }
     }

@@ -37,18 +37,23 @@ pub(super) const TURNS_RAD_S: f64 = 0.05;
 /// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
 pub(super) fn drive_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> DriveErrors {
-    let mut errors = pressure_errors(signals, machine, effects);
-    errors.force_nm = force_error_nm(signals, machine, effects);
+    let (mut errors, idle_nm) = pressure_errors(signals, machine, effects);
+    errors.force_nm = force_error_nm(signals, machine, effects, &idle_nm);
     errors
 }
 
-fn pressure_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> DriveErrors {
+/// Errors of the pressures, and the torque by which idle motors may hold a wheel, mean of the wheels, Nm.
+fn pressure_errors(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+) -> (DriveErrors, Samples) {
     let drive = Drive::new(machine, effects);
     let mut state = drive.at_rest(DT_S);
     let nm_per_pa = machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     let mut lag = Lag::new(signals.throttle[0]);
     let (mut common_pa, mut difference_pa, mut since_s) = (0.0, 0.0, 0.0);
-    let mut errors = DriveErrors::default();
+    let (mut errors, mut idle_nm) = (DriveErrors::default(), Vec::with_capacity(signals.len));
     for i in 0..signals.len {
         // A command is taken up in the ECU's next period, on average one and a half samples later.
         let taken = |back: usize| signals.throttle[i.saturating_sub(back)];
@@ -61,7 +66,9 @@ fn pressure_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> D
             engine_speed_rpm: machine.drive.engine_speed_rpm,
             wheel_speed_rad_s: wheel_speeds(signals, effects, i),
         };
-        let p = drive.step(&mut state, &input, DT_S).pump_pressure_pa;
+        let out = drive.step(&mut state, &input, DT_S);
+        let p = out.pump_pressure_pa;
+        idle_nm.push(out.hold_nm.sum() / 6.0);
         since_s += DT_S;
         if signals.is_fresh_pump_pressure[i] {
             let over = circuits_pa(signals, i);
@@ -75,7 +82,7 @@ fn pressure_errors(signals: &Signals, machine: &Machine, effects: &Effects) -> D
         errors.pressure_pa.push(common_pa);
         errors.difference_pa.push(difference_pa);
     }
-    errors
+    (errors, idle_nm)
 }
 
 /// Wheel speeds at sample `i`, as they are behind sensors that read in proportion too much: the oil
@@ -102,9 +109,14 @@ pub(super) fn motor_nm(s: &Signals, machine: &Machine, wheel: Wheel, i: usize) -
     over_pa * (machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA)
 }
 
-/// Torque that the motion takes less the torque there was, mean of the wheels, Nm. `NaN` on ground that
-/// is no plane: where each wheel stands is then not known well enough.
-fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+/// Torque that the motion takes less the torque there was, mean of the wheels, Nm, where idle motors hold
+/// by up to `idle_nm`. `NaN` on ground that is no plane: where each wheel stands is then not known well enough.
+fn force_error_nm(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    idle_nm: &Samples,
+) -> Samples {
     let Some(ground) = Grade::believed(signals, effects) else {
         return vec![f64::NAN; signals.len];
     };
@@ -141,8 +153,12 @@ fn force_error_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Sa
                     + weight_nm * climbs(signals, machine, effects, ground, i)
                     + scrub_nm[i]
                     - nm_per_pa * (first + second) / 2.0;
-                // A wheel at rest is held by anything up to its rolling resistance.
-                let holds_nm = drag_nm.abs() * (1.0 - rolls.abs());
+                // Whether idle motors brake wheels that still roll is a matter of makes.
+                let idle_nm = idle_nm[i].min(w.friction * weight_nm);
+                let brakes_nm = idle_nm * rolls;
+                let apart = apart + (-apart).clamp(brakes_nm.min(0.0), brakes_nm.max(0.0));
+                // A wheel at rest is held by anything up to its rolling resistance and its idle motor.
+                let holds_nm = (drag_nm.abs() + idle_nm) * (1.0 - rolls.abs());
                 error = (apart.abs() - holds_nm).max(0.0).copysign(apart);
             }
             error
@@ -173,4 +189,37 @@ pub(super) fn climbs(
     ];
     let along = |(heading, kg): (f64, f64)| kg * ground.climb(heading);
     frames.map(along).iter().sum::<f64>() / (machine.mass_kg() + payload_kg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::still::still;
+    use super::*;
+
+    /// Largest torque not accounted for, Nm, of a machine that goes on by itself from 5 s on, faster by `gains_m_s2`,
+    /// while nothing is asked of its motors.
+    fn left_nm(gains_m_s2: f64, motors_hold_by_nm: f64) -> f64 {
+        let machine = Machine::xt28();
+        let (mut s, mut effects) = (still(10), Effects::default());
+        let from_m_s = if gains_m_s2 < 0.0 { 1.0 } else { 0.1 };
+        for wheel in Wheel::ALL {
+            effects.wheels[wheel].standstill_drag.torque_nm = motors_hold_by_nm;
+            for i in 0..s.len {
+                let since_s = (f64::from(u32::try_from(i).unwrap()) * DT_S - 5.0).max(0.0);
+                let goes_m_s = (from_m_s + gains_m_s2 * since_s).max(0.0);
+                s.wheel_speed_rad_s[wheel][i] = goes_m_s / machine.wheels.radius_m;
+            }
+        }
+        let errors = drive_errors(&s, &machine, &effects).force_nm;
+        errors[500..].iter().fold(0.0_f64, |most, nm| most.max(nm.abs()))
+    }
+
+    #[test]
+    fn idle_motors_that_hold_may_brake_a_machine_that_rolls_but_never_speed_it_up() {
+        let [braked, sped] = [-0.8, 0.8].map(|gains_m_s2| left_nm(gains_m_s2, 0.0));
+        assert!(braked > 500.0 && sped > 500.0, "{braked} {sped}");
+        let [braked_nm, sped_nm] = [-0.8, 0.8].map(|gains_m_s2| left_nm(gains_m_s2, 5.0e3));
+        assert!(braked_nm < 0.3 * braked, "{braked_nm} of {braked}");
+        assert!(sped_nm > 0.9 * sped, "{sped_nm} of {sped}");
+    }
 }

@@ -11,6 +11,7 @@ use super::axles::Axles;
 use super::driving::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
 use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
+use super::stance::{Held, Holds};
 use super::traction::Traction;
 use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals};
 
@@ -37,12 +38,47 @@ const TRAVELS_RAD_S: f64 = 0.3;
 const STRIDE: usize = 5;
 /// Weight of what pushes tell of a speed, beside a wheel that holds.
 const COASTS: f64 = 0.02;
+/// How fast a wheel's foot may give way to what an idle motor holds it by, m/s/N: from not at all to a little
+/// more than a rigid-body engine's friction of 60 kN s/m.
+const CREEPS_M_S_N: [f64; 8] = [0.0, 1.2e-6, 2.0e-6, 3.2e-6, 5.0e-6, 8.0e-6, 1.25e-5, 2.0e-5];
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
 const BENT_RAD: f64 = 0.02;
 
-/// Rolling over a run.
+/// Rolling over a run. No log says how its tyres creep where idle motors hold them; what the wheels part by
+/// does.
 #[must_use]
 pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) -> RollingErrors {
+    let free = held_errors(s, machine, effects, None);
+    let parts = Parts::new(machine, effects);
+    let Some(held) = Held::new(s, machine, effects, &parts, 0.0) else { return free };
+    let left = |holds: &Holds| left_m2_s2(&free, holds, parts.radius_m);
+    let holds = CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n));
+    let best = holds.iter().min_by(|a, b| left(a).total_cmp(&left(b)));
+    held_errors(s, machine, effects, best)
+}
+
+/// Squares of what is about left of the wheels' speeds where `holds` drag their feet, of which none but
+/// the mean moves the machine.
+fn left_m2_s2(free: &RollingErrors, holds: &Holds, radius_m: f64) -> f64 {
+    let at = |i: usize| {
+        let slips_m_s = holds.slips_m_s(i);
+        let mean_m_s = slips_m_s.sum() / 6.0;
+        let of = |(w, slips_m_s): (Wheel, &f64)| {
+            let error_m_s = radius_m * free.wheel_rad_s[w][i] + slips_m_s - mean_m_s;
+            if error_m_s.is_finite() { error_m_s * error_m_s } else { 0.0 }
+        };
+        slips_m_s.iter().map(of).sum::<f64>()
+    };
+    (0..free.ahead_m_s.len()).step_by(STRIDE).map(at).sum()
+}
+
+/// Rolling over a run in which idle motors hold wheels as `holds` says.
+fn held_errors(
+    s: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    holds: Option<&Holds>,
+) -> RollingErrors {
     let (axles, linkage) = (Axles::new(machine), machine.linkage());
     let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
@@ -62,6 +98,8 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
         let radius_m = PerWheel::from_fn(|w| rolling_radius_m([&nominal, &parts], w, normal_n[w]));
         let mut traction =
             Traction::new(s, machine, effects, &normal_n, i, (before.as_ref(), step_s));
+        let held_m_s = holds.map_or(PerWheel::splat(0.0), |holds| holds.slips_m_s(i));
+        traction.creeps_m_s = PerWheel::from_fn(|w| traction.creeps_m_s[w] + held_m_s[w]);
         let ground_m_s = ground_speeds(s, effects, &linkage, (&pose, &radius_m, &traction), i);
         let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
         let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
@@ -173,4 +211,50 @@ fn expected_speeds(
         let left = if w.side() == Side::Left { half_track } else { -half_track };
         motion.along_m_s[frame] - left * motion.turn_rad_s[frame]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Axle;
+
+    use super::super::still::still;
+    use super::*;
+
+    /// A machine whose front arms swing to and fro by 4 cm at standstill while all sensors say that no wheel
+    /// turns beside its arm.
+    fn swinging() -> Signals {
+        let mut s = still(20);
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(60.0e3);
+            s.smooth_stroke_m[w].fill(0.2);
+            s.stroke_m[w].fill(0.2);
+        }
+        for i in 200..s.len {
+            let (sin, cos) = (2.0 * f64::from(u32::try_from(i - 200).unwrap()) * DT_S).sin_cos();
+            for w in Wheel::ALL.into_iter().filter(|w| w.axle() == Axle::Front) {
+                s.smooth_stroke_m[w][i] = 0.2 + 0.04 * sin;
+                s.smooth_stroke_rate_m_s[w][i] = 0.08 * cos;
+            }
+        }
+        s
+    }
+
+    fn largest_rad_s(motors_hold_by_nm: f64) -> f64 {
+        let mut effects = Effects::default();
+        for w in Wheel::ALL {
+            effects.wheels[w].standstill_drag.torque_nm = motors_hold_by_nm;
+        }
+        let errors = rolling_errors(&swinging(), &Machine::xt28(), &effects);
+        // Not before an arm has swung, nor at the end, which no smooth slope tells.
+        let of =
+            |(_, e): (_, &Samples)| e[300..1900].iter().fold(0.0_f64, |most, e| most.max(e.abs()));
+        errors.wheel_rad_s.iter().map(of).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn idle_motors_that_hold_keep_wheels_from_rolling_by_the_swing_of_their_arms() {
+        let [free, held] = [0.0, 6.0e3].map(largest_rad_s);
+        assert!(free > 0.03, "{free}");
+        assert!(held < 0.3 * free, "{held} of {free}");
+    }
 }

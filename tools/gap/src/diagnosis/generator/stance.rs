@@ -19,8 +19,8 @@ use crate::diagnosis::floor::Signal;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::signals::{Samples, Signals};
 use carried::Carrier;
-use holds::Holds;
-use instants::STANDING;
+pub(super) use holds::{Held, Holds};
+use instants::{PRESSURE_FILTER_S, STANDING};
 use layout::{Layout, Reach};
 pub(super) use lean::antenna_leans_m;
 use plane::{Foot, Plane};
@@ -77,9 +77,10 @@ struct Error {
 /// between wheel and arm or between wheel and ground moves it by 15 mm, and plants differ in that.
 const ROLLING_DOUBT: f64 = 2.0;
 
-/// How fast a wheel's foot may give way to a force along the ground, m/s/N: not at all, or as friction does on
-/// the labelled machines of a second plant (0.1 m/s at 10 kNm).
-const CREEPS_M_S_N: [f64; 2] = [0.0, 7.0e-6];
+/// How fast a wheel's foot may give way to a force along the ground, m/s/N: not at all, as friction does on
+/// the labelled machines of a second plant (0.1 m/s at 10 kNm), or as in a rigid-body engine whose friction damps
+/// by 60 kN s/m below its cone.
+const CREEPS_M_S_N: [f64; 3] = [0.0, 7.0e-6, 1.7e-5];
 /// What nothing can be said of: the ground is not level, pressures do not say it, brakes hold wheels
 /// against their arms, the machine is on fewer than three wheels.
 const UNKNOWN: Error = Error {
@@ -108,9 +109,10 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         instants.iter().map(judge).collect()
     };
     // No log says how its tyres creep. What the holds of its motors leave does.
-    let errors = CREEPS_M_S_N
-        .into_iter()
-        .filter_map(|creep_m_s_n| Holds::new(s, machine, effects, &parts, creep_m_s_n))
+    let held = Held::new(s, machine, effects, &parts, PRESSURE_FILTER_S);
+    let errors = held
+        .iter()
+        .flat_map(|held| CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n)))
         .map(|holds| held_by(Some(&holds)))
         .min_by(|a, b| left(a).total_cmp(&left(b)))
         .unwrap_or_else(|| held_by(None));

@@ -4,12 +4,13 @@
 //! An arm that swings at standstill wants its wheel to roll. The machine moves to where the wheels'
 //! holds balance, so that each wheel rolls by its arm's swing less that of all. A hold builds up over
 //! a little rolling, then slips, and stays when the arms come to rest. Wheel speeds are read too
-//! coarsely for this (7 mm/s at the rim), strokes are not.
+//! coarsely for this (7 mm/s at the rim), strokes are not. On tyres that creep a wheel that is held
+//! slips all the while that arms swing, and that its speed does tell.
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
-use super::instants::{PRESSURE_FILTER_S, pump_torque_nm};
+use super::instants::pump_torque_nm;
 use super::motion::{lagged, unflickered};
 use crate::diagnosis::generator::driving::climbs;
 use crate::diagnosis::generator::grade::Grade;
@@ -30,14 +31,30 @@ const STEP_S: f64 = STRIDE as f64 * DT_S;
 /// Halvings in which the holds are balanced: to a millionth.
 const BISECTIONS: usize = 20;
 
-/// Share of its most by which each wheel is held, -1 to 1, forward where it rolled forward.
-pub(super) struct Holds {
+/// Wheels that idle motors hold over a run, on tyres of which nothing is said yet.
+pub(in crate::diagnosis::generator) struct Held<'a> {
+    s: &'a Signals,
+    radius_m: f64,
+    /// Most that each motor holds by, Nm.
+    most_nm: PerWheel<f64>,
+    rims: PerWheel<Rim>,
+    /// Torque on all wheels that the ground's slope asks for, step by step, Nm.
+    pulled_nm: Samples,
+    /// Rolling resistance as a share of the grip.
+    resisting: f64,
+}
+
+/// How each wheel is held, step by step.
+pub(in crate::diagnosis::generator) struct Holds {
+    /// Share of its most, -1 to 1, forward where it rolled forward.
     steps: Vec<PerWheel<f64>>,
+    /// Speed at which its foot slips forward, m/s.
+    slips_m_s: Vec<PerWheel<f64>>,
 }
 
 /// What a log says of one wheel, step by step.
 struct Rim {
-    /// How far the wheel would have rolled beside its arm by the arm's swing, as late as the loads are, m.
+    /// How far the wheel would have rolled beside its arm by the arm's swing, m.
     swing_m: Samples,
     /// Torque at which it slips, Nm.
     grip_nm: Samples,
@@ -45,66 +62,86 @@ struct Rim {
     pushed_nm: Samples,
 }
 
-impl Holds {
-    /// Holds over a run with what `effects` say of the motors, on tyres that give way to a force along the ground
-    /// by `creep_m_s_n` m/s/N; none where no motor holds.
-    pub(super) fn new(
-        s: &Signals,
+impl<'a> Held<'a> {
+    /// Wheels with what `effects` say of the motors, `late_s` behind the strokes; none where no motor holds.
+    pub(in crate::diagnosis::generator) fn new(
+        s: &'a Signals,
         machine: &Machine,
         effects: &Effects,
         parts: &Parts,
-        creep_m_s_n: f64,
+        late_s: f64,
     ) -> Option<Self> {
-        let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm);
+        let most_nm = PerWheel::from_fn(|w| effects.wheels[w].standstill_drag.torque_nm.abs());
         if most_nm.iter().all(|(_, nm)| *nm == 0.0) {
             return None;
         }
-        let rims = PerWheel::from_fn(|w| Rim::new(s, machine, parts, w));
         let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
         let pull_nm = mass_kg * GRAVITY_M_S2 * parts.radius_m;
-        let resisting = machine.wheels.rolling_resistance / machine.wheels.friction;
         let ground = Grade::believed(s, effects).unwrap_or_default();
-        let (mut held, mut resting) = (PerWheel::splat(0.0), COMES_TO_REST);
-        let mut swung_m = 0.0_f64;
-        let mut steps = vec![held];
+        let pulled_nm = |i| pull_nm * climbs(s, machine, effects, ground, i);
+        Some(Self {
+            s,
+            radius_m: parts.radius_m,
+            most_nm,
+            rims: PerWheel::from_fn(|w| Rim::new(s, machine, parts, w, late_s)),
+            pulled_nm: (0..s.len).step_by(STRIDE).map(pulled_nm).collect(),
+            resisting: machine.wheels.rolling_resistance / machine.wheels.friction,
+        })
+    }
+
+    /// How they are held on tyres that give way to a force along the ground by `creep_m_s_n` m/s/N.
+    pub(in crate::diagnosis::generator) fn on(&self, creep_m_s_n: f64) -> Holds {
+        let (s, none) = (self.s, PerWheel::splat(0.0));
+        let (mut held, mut resting, mut swung_m) = (none, COMES_TO_REST, 0.0_f64);
+        let mut holds = Holds { steps: vec![none], slips_m_s: vec![none] };
         for (k, i) in (0..s.len).step_by(STRIDE).enumerate().skip(1) {
             let travels = s.throttle[i] != 0.0 || s.mean_wheel_speed_rad_s(i).abs() > TRAVELS_RAD_S;
             resting = if travels { 0 } else { resting + STRIDE };
             if resting <= COMES_TO_REST {
-                (held, swung_m) = (PerWheel::splat(0.0), 0.0);
-                steps.push(held);
+                (held, swung_m) = (none, 0.0);
+                holds.push(none, none);
                 continue;
             }
+            let rims = &self.rims;
             let swing = PerWheel::from_fn(|w| rims[w].swing_m[k] - rims[w].swing_m[k - 1]);
             swung_m += swing.iter().map(|(_, m)| m.abs()).fold(0.0, f64::max);
             let wanted = PerWheel::from_fn(|w| held[w] + swing[w] / YIELDS_M);
-            let weight_nm = PerWheel::from_fn(|w| {
-                let grip_nm = rims[w].grip_nm[k];
-                most_nm[w].abs().min(grip_nm) + resisting * grip_nm
-            });
+            let most_nm = PerWheel::from_fn(|w| self.most_nm[w].min(rims[w].grip_nm[k]));
+            let weight_nm = PerWheel::from_fn(|w| most_nm[w] + self.resisting * rims[w].grip_nm[k]);
             let pushed_nm: f64 = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
-            let yields = PerWheel::from_fn(|w| {
-                let creeps_m_s = creep_m_s_n * weight_nm[w] / parts.radius_m;
-                1.0 + creeps_m_s * STEP_S / YIELDS_M
-            });
-            let pulled_nm = pull_nm * climbs(s, machine, effects, ground, i);
-            held = balanced(&wanted, &yields, &weight_nm, pushed_nm - pulled_nm);
+            let by_m_s = creep_m_s_n / self.radius_m;
+            let yields = PerWheel::from_fn(|w| 1.0 + by_m_s * weight_nm[w] * STEP_S / YIELDS_M);
+            held = balanced(&wanted, &yields, &weight_nm, pushed_nm - self.pulled_nm[k]);
             // How the wheels were held when they came to rest is not known.
-            let is_known = swung_m > SWUNG_M;
-            steps.push(if is_known { held } else { PerWheel::splat(0.0) });
+            let known = if swung_m > SWUNG_M { held } else { none };
+            // What holds a wheel back from rolling forward drags its foot backward.
+            let slips_m_s = PerWheel::from_fn(|w| -by_m_s * held[w] * most_nm[w]);
+            holds.push(known, slips_m_s);
         }
-        Some(Self { steps })
+        holds
+    }
+}
+
+impl Holds {
+    fn push(&mut self, shares: PerWheel<f64>, slips_m_s: PerWheel<f64>) {
+        self.steps.push(shares);
+        self.slips_m_s.push(slips_m_s);
     }
 
     /// Shares at a sample of the log.
     pub(super) fn at(&self, sample: usize) -> PerWheel<f64> {
         self.steps[(sample / STRIDE).min(self.steps.len() - 1)]
     }
+
+    /// Speed at which each wheel's foot slips forward at a sample of the log, m/s.
+    pub(in crate::diagnosis::generator) fn slips_m_s(&self, sample: usize) -> PerWheel<f64> {
+        self.slips_m_s[(sample / STRIDE).min(self.slips_m_s.len() - 1)]
+    }
 }
 
 impl Rim {
-    fn new(s: &Signals, machine: &Machine, parts: &Parts, wheel: Wheel) -> Self {
-        let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
+    fn new(s: &Signals, machine: &Machine, parts: &Parts, wheel: Wheel, late_s: f64) -> Self {
+        let late = |samples: Samples| lagged(samples.into_iter(), late_s);
         let arm = &parts.arms[wheel];
         let own_n = own_n(machine, parts, wheel);
         let slips_m = machine.wheels.friction * parts.radius_m;

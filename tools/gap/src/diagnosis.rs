@@ -24,6 +24,7 @@ mod hypothesis;
 mod inquiry;
 mod instant;
 mod judgement;
+mod kinematics;
 mod knob;
 mod load_scale;
 mod next_drive;

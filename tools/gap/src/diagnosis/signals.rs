@@ -1,18 +1,18 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
+mod made;
 mod receiver;
 mod uncut;
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
 
 use xt28_ecus::pins;
 use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::floors::Floors;
-use super::instant::Instant;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
+use made::Made;
 use uncut::{CUT_M, uncut};
 
 /// Time series by channel, as logs and replays have them.
@@ -96,11 +96,7 @@ pub struct Signals {
     /// Torque with which wheels resist their rolling beyond what is ordinary, Nm: what all runs of a machine
     /// say together, none before they were asked ([`super::share_resistance`]).
     pub resists_nm: f64,
-    /// Made of the above when first asked for.
-    instants: OnceLock<Vec<Instant>>,
-    antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
-    scrubs: OnceLock<Vec<[f64; 2]>>,
-    torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
+    made: Made,
 }
 
 impl Signals {
@@ -186,36 +182,8 @@ impl Signals {
             headings: receiver::headings(series),
             floors: Floors::default(),
             resists_nm: 0.0,
-            instants: OnceLock::new(),
-            antenna_leans_m: OnceLock::new(),
-            scrubs: OnceLock::new(),
-            torques_nm: OnceLock::new(),
+            made: Made::default(),
         })
-    }
-
-    /// The instants at which the stance is judged. They need of a machine only where its axles and
-    /// joints are, how large its wheels are and which pump drives which; no knob turns those.
-    pub(super) fn instants(&self, first: impl FnOnce() -> Vec<Instant>) -> &[Instant] {
-        self.instants.get_or_init(first)
-    }
-
-    /// Where the antenna is for the machine's leaning. A machine file says that, and no knob.
-    pub(super) fn antenna_leans_m(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
-        self.antenna_leans_m.get_or_init(first)
-    }
-
-    /// How the tyres scrub as joints turn. They need of a machine only its axles, joints and radius.
-    pub(super) fn scrubs(&self, first: impl FnOnce() -> Vec<[f64; 2]>) -> &[[f64; 2]] {
-        self.scrubs.get_or_init(first)
-    }
-
-    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds. They need of a
-    /// machine only its circuits and what torque their pressure makes.
-    pub(super) fn torques_nm(
-        &self,
-        first: impl FnOnce() -> [PerWheel<Samples>; 2],
-    ) -> &[PerWheel<Samples>; 2] {
-        self.torques_nm.get_or_init(first)
     }
 
     /// Length of the run, s.

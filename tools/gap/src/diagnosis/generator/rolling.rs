@@ -4,7 +4,7 @@
 //! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
 //! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
 
-use xt28_machine::{ArmPose, GRAVITY_M_S2, Linkage, Machine, PerWheel, Side, Wheel};
+use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::axles::Axles;
@@ -13,6 +13,7 @@ use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
 use super::stance::{Held, Holds};
 use super::traction::Traction;
+use crate::diagnosis::kinematics::Kinematics;
 use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
@@ -79,7 +80,7 @@ fn held_errors(
     effects: &Effects,
     holds: Option<&Holds>,
 ) -> RollingErrors {
-    let (axles, linkage) = (Axles::new(machine), machine.linkage());
+    let kinematics = s.kinematics(|| wheel_kinematics(s, machine));
     let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
@@ -90,26 +91,23 @@ fn held_errors(
     };
     let step_s = STRIDE as f64 * DT_S;
     let (mut ahead, mut before) = (0.0, None);
-    for i in (0..s.len).step_by(STRIDE) {
+    for (i, moves) in (0..s.len).step_by(STRIDE).zip(kinematics) {
         let end = (i + STRIDE).min(s.len);
-        let joint = [0, 1].map(|j| s.joint_rad[j][i]);
-        let pose = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i]));
-        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], s.cylinder_load_n[w][i], &pose[w]));
+        let load_n = |w| s.cylinder_load_n[w][i];
+        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
         let radius_m = PerWheel::from_fn(|w| rolling_radius_m([&nominal, &parts], w, normal_n[w]));
         let mut traction =
             Traction::new(s, machine, effects, &normal_n, i, (before.as_ref(), step_s));
         let held_m_s = holds.map_or(PerWheel::splat(0.0), |holds| holds.slips_m_s(i));
         traction.creeps_m_s = PerWheel::from_fn(|w| traction.creeps_m_s[w] + held_m_s[w]);
-        let ground_m_s = ground_speeds(s, effects, &linkage, (&pose, &radius_m, &traction), i);
-        let carries = PerWheel::from_fn(|w| s.cylinder_load_n[w][i] > CARRYING_N);
-        let rate = [0, 1].map(|j| s.joint_rate_rad_s[j][i]);
-        let expected = |ahead| expected_speeds(&axles, machine, joint, rate, ahead);
-        let (none, one) = (expected(0.0), expected(1.0));
+        let ground_m_s = ground_speeds(s, effects, moves, (&radius_m, &traction), i);
+        let carries = PerWheel::from_fn(|w| load_n(w) > CARRYING_N);
+        let (standing_m_s, by_ahead) = (&moves.standing_m_s, &moves.by_ahead);
         let coasts_m_s = ahead + traction.speeds_up_m_s2(mass_kg) * step_s;
         let (mut product, mut square) = (0.0, 0.0);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
-            let (by_ahead, holds) = (one[wheel] - none[wheel], traction.holds[wheel]);
-            product += holds * by_ahead * (ground_m_s[wheel] - none[wheel]);
+            let (by_ahead, holds) = (by_ahead[wheel], traction.holds[wheel]);
+            product += holds * by_ahead * (ground_m_s[wheel] - standing_m_s[wheel]);
             square += holds * by_ahead * by_ahead;
             // Where all slide nothing tells the speed but what they push with.
             product += (1.0 - holds) * COASTS * coasts_m_s;
@@ -122,10 +120,11 @@ fn held_errors(
         errors.ahead_m_s[i..end].fill(ahead);
         // At the ends of a log a smooth slope is not that of what the wheels say.
         let is_whole = i >= SMOOTHED && i + SMOOTHED <= s.len;
-        let is_told = is_plane && is_whole && joint.iter().all(|rad| rad.abs() <= BENT_RAD);
+        let is_told =
+            is_plane && is_whole && s.joint_rad.iter().all(|rad| rad[i].abs() <= BENT_RAD);
         for (wheel, _) in carries.iter().filter(|(_, carries)| **carries) {
             let e = &effects.wheels[wheel];
-            let error = none[wheel] + ahead * (one[wheel] - none[wheel]) - ground_m_s[wheel];
+            let error = standing_m_s[wheel] + ahead * by_ahead[wheel] - ground_m_s[wheel];
             let told_m_s = traction.told_m_s(wheel, error);
             if is_told {
                 let per_m =
@@ -172,31 +171,51 @@ fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
     (median_nm - ORDINARY * w.rolling_resistance * weight_nm).max(0.0)
 }
 
+/// How wheels move with their arms and frames at each step.
+fn wheel_kinematics(s: &Signals, machine: &Machine) -> Vec<Kinematics> {
+    let (axles, linkage) = (Axles::new(machine), machine.linkage());
+    let at = |i: usize| {
+        let pose = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i]));
+        let after = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i] + 1e-4));
+        let by_stroke = |w: Wheel, of: fn(&ArmPose) -> f64| {
+            // Front arms point forward, the others backward.
+            let forward = if w.axle() as usize == 0 { 1.0 } else { -1.0 };
+            (of(&after[w]) - of(&pose[w])) / 1e-4 * forward * s.smooth_stroke_rate_m_s[w][i]
+        };
+        let [joint, rate] =
+            [&s.joint_rad, &s.joint_rate_rad_s].map(|of| [0, 1].map(|j: usize| of[j][i]));
+        let [standing_m_s, one] =
+            [0.0, 1.0].map(|ahead| expected_speeds(&axles, machine, joint, rate, ahead));
+        Kinematics {
+            turns_rad_s: PerWheel::from_fn(|w| by_stroke(w, |pose| pose.angle_rad)),
+            carried_m_s: PerWheel::from_fn(|w| by_stroke(w, |pose| pose.reach_m)),
+            by_ahead: PerWheel::from_fn(|w| one[w] - standing_m_s[w]),
+            standing_m_s,
+            pose,
+        }
+    };
+    (0..s.len).step_by(STRIDE).map(at).collect()
+}
+
 /// Speed at which each wheel's frame goes over the ground by what its sensor reads, m/s.
 fn ground_speeds(
     s: &Signals,
     effects: &Effects,
-    linkage: &Linkage,
-    (pose, radius_m, traction): (&PerWheel<ArmPose>, &PerWheel<f64>, &Traction),
+    moves: &Kinematics,
+    (radius_m, traction): (&PerWheel<f64>, &Traction),
     i: usize,
 ) -> PerWheel<f64> {
     PerWheel::from_fn(|w| {
-        let (pose, radius_m) = (&pose[w], radius_m[w]);
         let e = &effects.wheels[w];
-        let reading = s.smooth_wheel_speed_rad_s[w][i];
-        let rolls = reading / e.wheel_speed_scale.factor * radius_m;
-        // Front arms point forward, the others backward.
-        let forward = if w.axle() as usize == 0 { 1.0 } else { -1.0 };
-        let after = linkage.at_stroke(s.smooth_stroke_m[w][i] + 1e-4);
-        let by_stroke = |a: f64, b: f64| (b - a) / 1e-4 * forward * s.smooth_stroke_rate_m_s[w][i];
-        let turns = by_stroke(pose.angle_rad, after.angle_rad) * radius_m;
+        let rolls = s.smooth_wheel_speed_rad_s[w][i] / e.wheel_speed_scale.factor * radius_m[w];
+        let turns = moves.turns_rad_s[w] * radius_m[w];
         // Turned on its arm and with its arm it rolls; less what it is carried ahead of its frame.
         let travels = (rolls + turns) * (1.0 - e.slippery_ground.slip) - traction.creeps_m_s[w];
-        travels - by_stroke(pose.reach_m, after.reach_m)
+        travels - moves.carried_m_s[w]
     })
 }
 
-/// The same for a machine whose front axle goes `ahead`, m/s.
+/// Speed of each wheel's frame ahead there on a machine whose front axle goes `ahead`, m/s.
 fn expected_speeds(
     axles: &Axles,
     machine: &Machine,

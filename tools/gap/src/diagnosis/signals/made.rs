@@ -1,0 +1,63 @@
+//! What generators make of a run once, whatever they believe of its machine.
+
+use std::sync::OnceLock;
+
+use xt28_machine::PerWheel;
+
+use super::{Samples, Signals};
+use crate::diagnosis::instant::Instant;
+use crate::diagnosis::kinematics::Kinematics;
+
+/// Made of a run's samples when first asked for.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Made {
+    instants: OnceLock<Vec<Instant>>,
+    antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
+    kinematics: OnceLock<Vec<Kinematics>>,
+    scrubs: OnceLock<Vec<[f64; 2]>>,
+    torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
+}
+
+impl Signals {
+    /// The instants at which the stance is judged. They need of a machine only where its axles and
+    /// joints are, how large its wheels are and which pump drives which; no knob turns those.
+    pub(in crate::diagnosis) fn instants(
+        &self,
+        first: impl FnOnce() -> Vec<Instant>,
+    ) -> &[Instant] {
+        self.made.instants.get_or_init(first)
+    }
+
+    /// Where the antenna is for the machine's leaning. A machine file says that, and no knob.
+    pub(in crate::diagnosis) fn antenna_leans_m(
+        &self,
+        first: impl FnOnce() -> Vec<[f64; 2]>,
+    ) -> &[[f64; 2]] {
+        self.made.antenna_leans_m.get_or_init(first)
+    }
+
+    /// How wheels move with arms and frames, at each instant at which rolling is judged.
+    pub(in crate::diagnosis) fn kinematics(
+        &self,
+        first: impl FnOnce() -> Vec<Kinematics>,
+    ) -> &[Kinematics] {
+        self.made.kinematics.get_or_init(first)
+    }
+
+    /// How the tyres scrub as joints turn. They need of a machine only its axles, joints and radius.
+    pub(in crate::diagnosis) fn scrubs(
+        &self,
+        first: impl FnOnce() -> Vec<[f64; 2]>,
+    ) -> &[[f64; 2]] {
+        self.made.scrubs.get_or_init(first)
+    }
+
+    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds. They need of a
+    /// machine only its circuits and what torque their pressure makes.
+    pub(in crate::diagnosis) fn torques_nm(
+        &self,
+        first: impl FnOnce() -> [PerWheel<Samples>; 2],
+    ) -> &[PerWheel<Samples>; 2] {
+        self.made.torques_nm.get_or_init(first)
+    }
+}

@@ -6,6 +6,8 @@
 //! those velocities (semi-implicit Euler, first order). `f64`, nothing allocated in a step, and
 //! solved to rounding: what comes out is as smooth in every parameter as the laws that go in.
 
+#[cfg(test)]
+mod alone;
 mod axle;
 mod bias;
 mod contact;

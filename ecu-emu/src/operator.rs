@@ -28,9 +28,12 @@ const RUN_MAX_S: f64 = 3600.0;
 #[derive(Debug, thiserror::Error)]
 pub enum OperatorError {
     /// The file could not be read.
-    #[error("{path}: cannot read the operator's script: {source}; give an existing file")]
+    #[error(
+        "{path}: cannot read the operator's script: {source}; --operator is looked for from the working \
+         folder, a scenario's operator beside the scenario"
+    )]
     Read {
-        /// The file.
+        /// The file that was looked for, its folder included.
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,

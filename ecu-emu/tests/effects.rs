@@ -6,7 +6,7 @@ use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{
     ArmStatus, ArmStatusState, ArmTarget, ArmTargetMode, Attitude, DriveCurrent, DriveTarget, Eec1,
-    PosFront, RefCurrentFront, RefCurrentRear, WheelSpeedSigned,
+    PosFront, PosMidRear, RefCurrentFront, RefCurrentRear, WheelSpeedJoint, WheelSpeedSigned,
 };
 use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, SimTime, Wheel};
@@ -137,6 +137,108 @@ fn a_steering_gain_shows_in_the_steering_current() {
     assert!((opening(current(&gained)) / opening(current(&nominal)) - 1.5).abs() < 0.05);
     let arms = |log: &_| series(log, RefCurrentFront::decode, |m| m.fr_b_ma);
     assert_eq!(arms(&gained)[..500], arms(&nominal)[..500]);
+}
+
+/// Mean of a series between two times, s.
+fn mean(series: &[(f64, f64)], from_s: f64, to_s: f64) -> f64 {
+    let within = series.iter().filter(|(t, _)| (from_s..to_s).contains(t)).map(|(_, v)| *v);
+    within.clone().sum::<f64>() / within.count() as f64
+}
+
+/// What winds up over a step of 50 mm, some 60 mm s, leaves an arm that is nearly there beyond its target by
+/// ki / kp of it: 1.5 mm with the machine's own gains, five times that with five times the integral.
+#[test]
+fn an_arms_integral_gain_shows_beyond_its_target_and_the_others_stay() {
+    let (nominal, gained) =
+        (bus(Effects::default()), with("name = \"arm-gain\"\nscope = \"front\"\nki_factor = 5.0"));
+    let front = |log: &_| mean(&series(log, PosFront::decode, |m| m.fr_mm), 5.0, 8.0);
+    let rear = |log: &_| mean(&series(log, PosMidRear::decode, |m| m.br_mm), 5.0, 8.0);
+    let beyond_mm = front(&gained) - front(&nominal);
+    assert!((3.0..8.0).contains(&beyond_mm), "{beyond_mm} mm");
+    assert!((rear(&gained) - rear(&nominal)).abs() < 2.0, "{} {}", rear(&gained), rear(&nominal));
+}
+
+/// Error of a joint 8 s after it was asked for 15 degrees, under the law alone: rate = full kp (e + ki integral of e).
+fn error_left_deg(ki_per_s: f64) -> f64 {
+    let (articulation, dt_s) = (Machine::xt28().articulation, 1e-3);
+    let per_s = articulation.rate_max_deg_s * articulation.kp_per_deg;
+    let (mut error_deg, mut integral_deg_s) = (15.0, 0.0);
+    for _ in 0..7500 {
+        integral_deg_s += error_deg * dt_s;
+        error_deg -= per_s * (error_deg + ki_per_s * integral_deg_s) * dt_s;
+    }
+    error_deg
+}
+
+/// Wheels that scrub take a joint 0.7 degrees on.
+#[test]
+fn a_steering_integral_gain_shows_in_what_is_left_of_the_error() {
+    let joint = |log: &[_]| series(log, WheelSpeedJoint::decode, |m| m.front_joint_deg);
+    let arms = |log: &_| series(log, RefCurrentFront::decode, |m| m.fr_b_ma);
+    let nominal = bus(Effects::default());
+    for ki_factor in [0.0, 1.0, 3.0] {
+        let gained = with(&format!("name = \"steer-gain\"\nki_factor = {ki_factor}"));
+        let left_deg = 15.0 - mean(&joint(&gained), 13.3, 13.7);
+        let wanted_deg = error_left_deg(ki_factor * Machine::xt28().articulation.ki_per_s);
+        assert!(
+            (left_deg - wanted_deg).abs() < 0.8,
+            "{ki_factor}: {left_deg}, not {wanted_deg} deg"
+        );
+        assert_eq!(arms(&gained)[..500], arms(&nominal)[..500]);
+    }
+}
+
+/// Mean distance of the rear valve's current from what follows of the joints' own angles if the rear one follows
+/// at this share of the front one, from 7 s on, mA.
+fn off_follower_ma(log: &[(SimTime, Frame)], ratio: f64) -> f64 {
+    let articulation = Machine::xt28().articulation;
+    let joint = |of: fn(&WheelSpeedJoint) -> f64| series(log, WheelSpeedJoint::decode, of);
+    let (front, rear) = (joint(|m| m.front_joint_deg), joint(|m| m.rear_joint_deg));
+    let current = series(log, DriveCurrent::decode, |m| m.steer_rear_a_ma);
+    let (mut integral_deg_s, mut off_ma) = (0.0, Vec::new());
+    for (pair, (_, rear_deg)) in front.windows(2).zip(&rear) {
+        let [(t, front_deg), (next, _)] = [pair[0], pair[1]];
+        let error_deg = ratio * front_deg - rear_deg;
+        if t > 3.5 {
+            integral_deg_s += error_deg * (next - t);
+        }
+        let opening =
+            articulation.kp_per_deg * (error_deg + articulation.ki_per_s * integral_deg_s);
+        // 415 mA opens, 315 mA more is full.
+        let wanted_ma = 415.0 + 315.0 * opening;
+        let made = current.iter().find(|(at, _)| *at >= t && *at > 7.0 && opening > 0.02);
+        off_ma.extend(made.map(|(_, ma)| (ma - wanted_ma).abs()));
+    }
+    off_ma.iter().sum::<f64>() / off_ma.len() as f64
+}
+
+/// The joints' angles would not tell by themselves: wheels that scrub turn both.
+#[test]
+fn a_weak_follower_shows_in_the_rear_valve_and_the_front_one_is_as_before() {
+    let (nominal, weak) =
+        (bus(Effects::default()), with("name = \"rear-follower-lag\"\nratio_factor = 0.5"));
+    let ratio = Machine::xt28().articulation.rear_ratio;
+    let off_ma = [off_follower_ma(&nominal, ratio), off_follower_ma(&weak, 0.5 * ratio)];
+    let mistaken_ma = [off_follower_ma(&nominal, 0.5 * ratio), off_follower_ma(&weak, ratio)];
+    assert!(off_ma.iter().all(|ma| *ma < 3.0), "{off_ma:?} mA");
+    assert!(mistaken_ma.iter().all(|ma| *ma > 20.0), "{mistaken_ma:?} mA");
+    let front = |log: &_| most(&series(log, DriveCurrent::decode, |m| m.steer_front_a_ma), 6.0);
+    assert!((front(&weak) - front(&nominal)).abs() <= 3.0, "{} {}", front(&weak), front(&nominal));
+}
+
+/// A second number of an effect, given as the nominal machine has it, changes no frame.
+#[test]
+fn second_numbers_at_neutral_leave_the_bus_as_it_is() {
+    let nominal = bus(Effects::default());
+    for effect in [
+        "name = \"arm-gain\"\nki_factor = 1.0",
+        "name = \"steer-gain\"\nki_factor = 1.0",
+        "name = \"rear-follower-lag\"\nratio_factor = 1.0",
+        "name = \"drive-lag\"\nlead_s = 0.0",
+        "name = \"unsupported-sag\"\nbelow_n = 0.0",
+    ] {
+        assert!(with(effect) == nominal, "{effect}");
+    }
 }
 
 #[test]

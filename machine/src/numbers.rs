@@ -314,7 +314,7 @@ impl Machine {
         }
         let fault = range::too_low(self).or_else(|| range::misplaced(self));
         let fault = fault.or_else(|| range::unhinged(self));
-        let fault = fault.or_else(|| range::at_odds(self));
+        let fault = fault.or_else(|| range::at_odds(self)).or_else(|| range::too_light(self));
         let fault = fault.or_else(|| self.levelling.fault());
         if let Some((key, value, must)) = fault {
             let key = key.to_owned();

@@ -12,6 +12,11 @@ const LEVER_MIN_M: f64 = 0.05;
 const STOP_GIVES_M: f64 = 0.02;
 /// How far two numbers that follow from one another may part: both are rounded.
 const ROUNDING: f64 = 0.01;
+/// Least inertia of a wheel about its axle, kg m² (assumed), and least time in which its circuit may take it along, s
+/// (assumed): with either a plant has to make some twenty
+/// of a step.
+const SPIN_MIN_KG_M2: f64 = 3.0;
+const DRIVE_GRIPS_S: f64 = 0.5e-3;
 /// What may lie on either side of zero; all else is a size or a gain.
 const SIGNED: [&str; 9] = [
     "front_com_m",
@@ -106,6 +111,16 @@ pub(crate) fn at_odds(machine: &Machine) -> Option<(&'static str, f64, &'static 
     let must = "it must be hydraulics.flow_full_m3_s over arms.area_bore_m2 to 1 %, the speed at which a \
                 valve fully open extends its cylinder";
     parts.then_some(("hydraulics.speed_full_m_s", hydraulics.speed_full_m_s, must))
+}
+
+/// Wheels that turn too lightly for their drive: section and key, the value, what it must be.
+pub(crate) fn too_light(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
+    let (wheel_kg, v) = (machine.masses.wheel_kg, &machine.vehicle);
+    let spins_kg_m2 = wheel_kg * v.wheel_gyration_m * v.wheel_gyration_m;
+    let least_kg_m2 = (DRIVE_GRIPS_S * v.circuit_gain_nms).max(SPIN_MIN_KG_M2);
+    let must = "times vehicle.wheel_gyration_m squared it must be at least 3 kg m², and at least \
+                vehicle.circuit_gain_nms times 0.5 ms: with less the drive is stiffer than a plant can follow";
+    (spins_kg_m2 < least_kg_m2).then_some(("masses.wheel_kg", wheel_kg, must))
 }
 
 /// A number that is too low: section and key, the value, what it must be.
@@ -256,6 +271,21 @@ mod tests {
             .replace("flow_full_m3_s = 0.0016667 ", "flow_full_m3_s = 0.002 ")
             .replace("speed_full_m_s = 0.212 ", "speed_full_m_s = 0.255 ");
         assert!(Machine::parse(&faster, Path::new("m.toml")).is_ok());
+    }
+
+    #[test]
+    fn a_wheel_is_not_too_light_for_its_drive() {
+        for (from, to) in [
+            ("wheel_kg = 550.0 ", "wheel_kg = 8.0 "),
+            ("wheel_gyration_m = 0.6 ", "wheel_gyration_m = 0.05 "),
+            ("circuit_gain_nms = 10000.0 ", "circuit_gain_nms = 4.0e5 "),
+        ] {
+            let error = refusal(from, to);
+            assert!(error.starts_with("m.toml: masses.wheel_kg = "), "{error}");
+            assert!(error.contains("vehicle.circuit_gain_nms times 0.5 ms"), "{error}");
+        }
+        let lighter = Machine::builtin_text().replace("wheel_kg = 550.0 ", "wheel_kg = 15.0 ");
+        assert!(Machine::parse(&lighter, Path::new("m.toml")).is_ok());
     }
 
     #[test]

@@ -12,6 +12,10 @@ use crate::{Parts, RollHinge, Terrain, Tilt};
 /// twists them by a degree and a half.
 const ROLL_STOP: EndStop = EndStop { stiffness: 8.0e6, damping: 4.0e5, damped_at: 2e-3 };
 
+/// A torque held over a step turns a free wheel past where it wants it by 2 J/dt a rad/s, J its inertia; this much
+/// is asked of a step (assumed), for more leaves wheels that lose their ground to swing on for long.
+pub(crate) const HELD_SHARE: f64 = 1.5;
+
 /// A solver of the vehicle's rigid bodies. A clone is a snapshot: it goes on bit for bit alike.
 pub trait Bodies: Clone {
     /// The parts set down on the terrain, front axle at the origin heading east, arms at `stroke_m`.
@@ -19,6 +23,10 @@ pub trait Bodies: Clone {
 
     /// The motion after the last step.
     fn motion(&self) -> Motion;
+
+    /// Longest step, s, over which a torque may be held that grows by `slope_nms` Nm with each rad/s of a wheel's
+    /// spin, on wheels of `inertia_kg_m2` about their axles: beyond, they are thrown to and fro.
+    fn held_at_most_s(inertia_kg_m2: f64, slope_nms: f64) -> f64;
 
     /// Advances by `dt_s` s under `loads`.
     fn advance(&mut self, loads: &Loads, dt_s: f64);
@@ -149,7 +157,8 @@ pub struct Motion {
     pub rate_rad_s: [f64; 3],
     /// Vertical force of the ground on each wheel, mean of the last step, N.
     pub ground_force_n: PerWheel<f64>,
-    /// Force of the ground on anything but the wheels, mean of the last step, N.
+    /// Force of the ground on anything but the wheels, mean of the last step, N; see
+    /// [`crate::VehicleState::chassis_force_n`] on its peaks.
     pub chassis_force_n: f64,
 }
 

@@ -6,6 +6,8 @@
 //! those velocities (semi-implicit Euler, first order). `f64`, nothing allocated in a step, and
 //! solved to rounding: what comes out is as smooth in every parameter as the laws that go in.
 
+#[cfg(test)]
+mod alone;
 mod axle;
 mod bias;
 mod contact;
@@ -31,7 +33,7 @@ use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
 use self::touch::{CONTACTS_MAX, Search, patch};
 use self::tree::Tree;
-use crate::bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed};
+use crate::bodies::{Bodies, HELD_SHARE, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, Terrain};
 
 /// The vehicle's bodies in reduced coordinates. A clone is a snapshot.
@@ -93,6 +95,10 @@ impl Bodies for ReducedBodies {
             ground_force_n: self.ground_force_n,
             chassis_force_n: self.chassis_force_n,
         }
+    }
+
+    fn held_at_most_s(inertia_kg_m2: f64, slope_nms: f64) -> f64 {
+        HELD_SHARE * inertia_kg_m2 / slope_nms
     }
 
     fn advance(&mut self, loads: &Loads, dt_s: f64) {

@@ -8,6 +8,7 @@ use core::time::Duration;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel};
 
 use crate::actuators::Actuators;
+use crate::blocks::Drive;
 use crate::bodies::{Bodies, Motion};
 use crate::{Actuation, Effects, Parts, Plant, RapierBodies, STEP, Terrain, Tilt, VehicleState};
 
@@ -27,6 +28,8 @@ pub struct Vehicle<B = RapierBodies> {
     tilt: Option<Tilt>,
     antenna_m: [f64; 3],
     step_s: f64,
+    /// A step is made of so many, in each of which the blocks act anew.
+    turns: u32,
     motion: Motion,
     state: VehicleState,
 }
@@ -45,7 +48,10 @@ impl<B: Bodies> Vehicle<B> {
     ///
     /// The arms start near their load, so the machine settles within about a second.
     ///
-    /// The reference makes steps longer than [`STEP`] of several; the fast core takes them whole.
+    /// The reference makes steps longer than [`STEP`] of several; the fast core takes them whole. Where wheels turn
+    /// too lightly for their drive ([`Bodies::held_at_most_s`]), blocks and bodies take turns within a step, as
+    /// often as it takes: nominal wheels need none of that; of an eighth of their inertia they need five turns
+    /// a [`STEP`] on the reference and two on the fast core.
     #[must_use]
     pub fn with(
         machine: &Machine,
@@ -57,10 +63,14 @@ impl<B: Bodies> Vehicle<B> {
         let parts = Parts::new(machine, effects);
         let step_s = step.as_secs_f64();
         let bodies = B::new(&parts, terrain, stroke_m);
+        let slope_nms = Drive::slope_max_nms(machine);
+        let held_s = B::held_at_most_s(parts.wheel.inertia_kg_m2[1], slope_nms);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let turns = (step_s / held_s).ceil().max(1.0) as u32;
         let mut vehicle = Self {
             motion: bodies.motion(),
             bodies,
-            actuators: Actuators::new(machine, effects, stroke_m, step_s),
+            actuators: Actuators::new(machine, effects, stroke_m, step_s / f64::from(turns)),
             front_com_m: parts.frames[0].com_m,
             com_to_imu_m: {
                 let (imu_m, com_m) = (machine.frames.front_com_m, parts.frames[0].com_m);
@@ -73,6 +83,7 @@ impl<B: Bodies> Vehicle<B> {
                 [x + lever.x_m, y + lever.y_m, z]
             },
             step_s,
+            turns,
             state: VehicleState::default(),
         };
         vehicle.observe(vehicle.imu_velocity_m_s(&vehicle.motion));
@@ -83,6 +94,11 @@ impl<B: Bodies> Vehicle<B> {
     #[must_use]
     pub const fn bodies(&self) -> &B {
         &self.bodies
+    }
+
+    /// Time in which blocks and bodies act once each, s.
+    fn turn_s(&self) -> f64 {
+        self.step_s / f64::from(self.turns)
     }
 
     /// Velocity of the inertial unit in this motion, along its axes.
@@ -137,10 +153,20 @@ impl<B: Bodies> Vehicle<B> {
 
 impl<B: Bodies> Plant for Vehicle<B> {
     fn step(&mut self, actuation: &Actuation) {
-        let loads = self.actuators.step(actuation, &self.motion, &mut self.state, self.step_s);
-        self.bodies.advance(&loads, self.step_s);
         let before_m_s = self.imu_velocity_m_s(&self.motion);
-        self.motion = self.bodies.motion();
+        let turns = f64::from(self.turns);
+        let (mut ground_force_n, mut chassis_force_n) = (PerWheel::splat(0.0), 0.0);
+        for _ in 0..self.turns {
+            let turn_s = self.turn_s();
+            let loads = self.actuators.step(actuation, &self.motion, &mut self.state, turn_s);
+            self.bodies.advance(&loads, turn_s);
+            self.motion = self.bodies.motion();
+            let Motion { ground_force_n: on_wheels_n, chassis_force_n: on_frames_n, .. } =
+                self.motion;
+            ground_force_n = PerWheel::from_fn(|w| ground_force_n[w] + on_wheels_n[w] / turns);
+            chassis_force_n += on_frames_n / turns;
+        }
+        self.motion = Motion { ground_force_n, chassis_force_n, ..self.motion };
         self.observe(before_m_s);
     }
 

@@ -219,6 +219,36 @@ fn a_hanging_arm_drifts_out_and_standing_ones_stay() {
     }
 }
 
+/// With a threshold it sets in under load: the rear arms, which carry less than 40 kN, drift out, and the front
+/// ones, which carry twice that, stay. Without a rate no threshold shows, to the bit.
+#[test]
+fn a_threshold_lets_loaded_arms_drift_and_heavier_ones_stay() {
+    let closed = |_: f64, _: Wheel| 0.0;
+    let sag = |values: &[(&str, f64)]| with("unsupported-sag", "all", values);
+    let states = record(&sag(&[("rate_m_s", 0.01), ("below_n", 40e3)]), 0.5, closed);
+    assert!(states.iter().all(|s| s.cylinder_force_n[Wheel::Br] > 5e3), "they are loaded");
+    for wheel in [Wheel::Br, Wheel::Bl] {
+        let drift_m_s = oil_speed_m_s(&states, wheel, 0.0, 0.4);
+        assert!((drift_m_s / 0.01 - 1.0).abs() < 1e-6, "{wheel}: {drift_m_s}");
+    }
+    for wheel in FRONT {
+        assert!(oil_speed_m_s(&states, wheel, 0.0, 0.4).abs() < 1e-8, "{wheel}");
+    }
+    // Under a load between, in proportion to what is missing of the threshold.
+    let drift_m_s = |below_n: f64| {
+        let effects = sag(&[("rate_m_s", 0.01), ("below_n", below_n)]);
+        let mut rig = ArmRig::new(&effects, 5e3, 0.17, 2e4);
+        (0..400).for_each(|_| rig.step(0.0, 2e4));
+        (rig.motion.stroke_m - 0.17) / (400.0 * DT_S)
+    };
+    let (some_m_s, more_m_s) = (drift_m_s(23e3), drift_m_s(26e3));
+    assert!(some_m_s > 1e-3 && (more_m_s / some_m_s - 2.0).abs() < 0.02, "{some_m_s} {more_m_s}");
+    assert_eq!(
+        record(&sag(&[("below_n", 40e3)]), 0.5, closed),
+        record(&Effects::default(), 0.5, closed)
+    );
+}
+
 /// The load stays what it was; the oil bears the seals on the way up and is helped on the way down.
 #[test]
 fn friction_opens_a_loop_between_the_pressures_up_and_down() {

@@ -156,6 +156,10 @@ impl Bodies for Overheard {
         self.bodies.motion()
     }
 
+    fn held_at_most_s(inertia_kg_m2: f64, slope_nms: f64) -> f64 {
+        RapierBodies::held_at_most_s(inertia_kg_m2, slope_nms)
+    }
+
     fn advance(&mut self, loads: &Loads, dt_s: f64) {
         self.loads = *loads;
         self.bodies.advance(loads, dt_s);

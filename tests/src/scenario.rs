@@ -298,6 +298,17 @@ stands-still = { below_m_s = 0.02 }
             (parse("2016\"\nquirks = { x = true }\n#", ACTION), "a/ramp.toml:7: no oddity \"x\""),
             (parse("2015", ACTION), "a/ramp.toml:6: no profile \"2015\"; give paper or 2016"),
         ];
+        let absent = Scenario::parse(
+            &GOOD.replace(
+                "[terrain.ramp]",
+                "profile = \"2016\"\noperator = \"no.toml\"\n[terrain.ramp]",
+            ),
+            Path::new("a/ramp.toml"),
+            |_| Err(io::ErrorKind::NotFound.into()),
+        );
+        let error = absent.unwrap_err().to_string();
+        assert!(error.starts_with("a/ramp.toml:7: a/no.toml: cannot read the operator"), "{error}");
+        assert!(error.ends_with("a scenario's operator beside the scenario"), "{error}");
         for (refused, starts) in refusals {
             let error = refused.unwrap_err().to_string();
             assert!(error.starts_with(starts), "{error}");

@@ -10,7 +10,7 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
-use super::slip_trim::slip_trim_nm;
+use super::slip_trim::{GAIN_NMS, slip_trim_nm};
 use crate::effects::{DelayLine, DriveEffects, Effects, Lag, StandstillDrag};
 
 /// Time in which the engine's speed answers to load, s (assumed).
@@ -99,6 +99,12 @@ impl Drive {
             effects: effects.drive,
             standstill_drag: PerWheel::from_fn(|wheel| effects.wheels[wheel].standstill_drag),
         }
+    }
+
+    /// How much a motor's torque falls at the most as its own and the circuit's other wheels turn faster together, or
+    /// it against them, Nm a rad/s.
+    pub(crate) const fn slope_max_nms(machine: &Machine) -> f64 {
+        machine.vehicle.circuit_gain_nms.max(GAIN_NMS)
     }
 
     /// A transmission at rest, to be stepped every `dt_s` s.

@@ -3,7 +3,7 @@
 /// A wheel this much off its circuit's mean is pulled back, rad/s (assumed: 4 rpm).
 const FREE_RAD_S: f64 = 4.0 * core::f64::consts::TAU / 60.0;
 /// Torque beyond that, Nm s (assumed).
-const GAIN_NMS: f64 = 6_000.0;
+pub(super) const GAIN_NMS: f64 = 6_000.0;
 
 /// Torque that is taken from a wheel which turns by `off_rad_s` faster than its circuit's mean, Nm; given to
 /// it where it is slower.

@@ -7,6 +7,8 @@
 //! severity = 0.5      # share of the way from the machine as it is; 1 unless given
 //! delay_s = 0.2
 //! ```
+//!
+//! One that adds nothing says so, `effect = []`: a file without a word of effects is more likely another file.
 
 use core::fmt::Write as _;
 use std::collections::BTreeMap;
@@ -26,12 +28,14 @@ pub struct Overlay {
     pub entries: Vec<Entry>,
 }
 
+/// The keys of one effect and where each has its value.
+type DraftEntry = BTreeMap<String, Spanned<Value>>;
+
 /// The file of an overlay, before anyone asked what its keys mean.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Draft {
-    #[serde(default)]
-    effect: Vec<Spanned<BTreeMap<String, Spanned<Value>>>>,
+    effect: Option<Vec<Spanned<DraftEntry>>>,
 }
 
 /// One effect of an overlay: a table that other files may hold as well.
@@ -109,7 +113,11 @@ impl Overlay {
             let single = text.get(start..).is_some_and(|rest| rest.starts_with("[effect]"));
             refuse(start, if single { format!("{problem}; write [[effect]]") } else { problem })
         })?;
-        let entry = |draft: &Spanned<BTreeMap<String, Spanned<Value>>>| {
+        let listed = draft.effect.ok_or_else(|| {
+            let problem = "no [[effect]] in this file; write effect = [] where none is meant";
+            refuse(0, problem.to_owned())
+        })?;
+        let entry = |draft: &Spanned<DraftEntry>| {
             let table = draft.get_ref();
             let values = table.iter().map(|(key, value)| (key.as_str(), value.get_ref()));
             Entry::of(&values.collect()).map_err(|Refusal { key, problem }| {
@@ -117,7 +125,7 @@ impl Overlay {
                 refuse(at_key.unwrap_or(draft.span().start), problem)
             })
         };
-        let entries = draft.effect.iter().map(entry).collect::<Result<_, _>>()?;
+        let entries = listed.iter().map(entry).collect::<Result<_, _>>()?;
         Ok(Self { entries })
     }
 
@@ -138,6 +146,9 @@ impl Overlay {
     /// The file that reads back as this overlay.
     #[must_use]
     pub fn to_toml(&self) -> String {
+        if self.entries.is_empty() {
+            return "effect = []\n".to_owned();
+        }
         let mut text = String::new();
         for entry in &self.entries {
             let _ = writeln!(text, "[[effect]]\nname = \"{}\"", entry.effect.name);
@@ -279,6 +290,17 @@ mod tests {
     fn an_effect_in_single_brackets_is_told_of_the_double_ones() {
         let error = parse("\n[effect]\nname = \"arm-delay\"\ndelay_s = 0.2\n").unwrap_err();
         assert!(error.starts_with("o.toml:2:") && error.ends_with("write [[effect]]"), "{error}");
+    }
+
+    #[test]
+    fn none_is_said_and_a_file_that_says_nothing_is_refused() {
+        let none = Overlay::default();
+        assert_eq!(parse(&none.to_toml()).unwrap(), none);
+        for text in ["", "# a note\n"] {
+            let error = parse(text).unwrap_err();
+            assert!(error.starts_with("o.toml:1: no [[effect]] in this file"), "{error}");
+            assert!(error.ends_with("effect = [] where none is meant"), "{error}");
+        }
     }
 
     #[test]

@@ -46,7 +46,7 @@ fn inertias(tree: &Tree, pose: &Pose) -> Inertias {
 }
 
 /// Twists of all bodies under generalised velocities, with each body's spatial inertia applied.
-fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Spatial, Spatial)> {
+pub(super) fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Spatial, Spatial)> {
     let pose = Pose::new(tree, state);
     let about = inertias(tree, &pose).about_com;
     let of = |mass_kg: f64, com: DVec3, about: &DMat3, twist: &Spatial| {

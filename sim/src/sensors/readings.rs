@@ -131,10 +131,13 @@ mod tests {
     #[test]
     fn scales_of_stroke_and_wheel_speed_show_where_they_are() {
         let (exact, scaled) = with("name = \"stroke-scale\"\nfactor = 0.95");
-        assert!((scaled.stroke_m[Wheel::Mr] - 0.19).abs() < 1e-12);
+        assert!(scaled.stroke_m.0.iter().all(|m| (m - 0.19).abs() < 1e-12));
         assert_eq!(Readings { stroke_m: exact.stroke_m, ..scaled }, exact);
         let (exact, scaled) = with("name = \"wheel-speed-scale\"\nscope = \"BL\"\nfactor = 1.2");
         assert!((scaled.wheel_speed_rad_s[Wheel::Bl] - 0.84).abs() < 1e-12);
-        assert_eq!(scaled.wheel_speed_rad_s[Wheel::Br], exact.wheel_speed_rad_s[Wheel::Br]);
+        for wheel in Wheel::ALL.into_iter().filter(|wheel| *wheel != Wheel::Bl) {
+            assert_eq!(scaled.wheel_speed_rad_s[wheel], exact.wheel_speed_rad_s[wheel], "{wheel}");
+        }
+        assert_eq!(Readings { wheel_speed_rad_s: exact.wheel_speed_rad_s, ..scaled }, exact);
     }
 }

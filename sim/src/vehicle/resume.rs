@@ -41,10 +41,10 @@ impl<B: Placed> Vehicle<B> {
     ) -> Self {
         let mut vehicle = Self::with(machine, effects, terrain, measured.stroke_m, step);
         let motion = vehicle.motion_of(measured);
-        vehicle.actuators.resume(measured, actuation, &motion, vehicle.step_s);
+        vehicle.actuators.resume(measured, actuation, &motion, vehicle.turn_s());
         let steps = (warm.as_secs_f64() / vehicle.step_s).round();
         let mut ahead = vehicle.actuators.clone();
-        let loads = ahead.step(actuation, &motion, &mut VehicleState::default(), vehicle.step_s);
+        let loads = ahead.step(actuation, &motion, &mut VehicleState::default(), vehicle.turn_s());
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         for _ in 0..steps as u32 {
             vehicle.bodies.place(&motion);

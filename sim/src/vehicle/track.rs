@@ -8,7 +8,9 @@ impl<B: Placed + Send + 'static> Track for Vehicle<B> {
     fn track(&mut self, measured: &VehicleState, actuation: &Actuation) {
         let motion = self.motion_of(measured);
         let mut unseen = VehicleState::default();
-        self.actuators.step(actuation, &motion, &mut unseen, self.step_s);
+        for _ in 0..self.turns {
+            self.actuators.step(actuation, &motion, &mut unseen, self.turn_s());
+        }
         self.place(measured, actuation);
     }
 

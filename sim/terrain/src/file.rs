@@ -1,15 +1,11 @@
 //! A terrain from its TOML file: tables of layers, or `kind = "..."` and the keys of the one layer.
 
-use std::fmt;
-use std::marker::PhantomData;
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::de::value::{MapAccessDeserializer, StringDeserializer};
-use serde::de::{
-    DeserializeOwned, DeserializeSeed, IgnoredAny, IntoDeserializer, MapAccess, Visitor,
-};
-use serde::{Deserialize, Deserializer};
-use toml::Spanned;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::{Spanned, Value};
 
 use crate::{Terrain, TerrainError, TerrainSpec};
 
@@ -67,12 +63,6 @@ fn line_at(text: &str, byte: usize) -> usize {
     text.as_bytes()[..byte.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1
 }
 
-/// The one key that says which form the file has.
-#[derive(Deserialize)]
-struct Form {
-    kind: Option<Spanned<String>>,
-}
-
 /// What is wrong, and from which byte of the text on.
 struct Problem {
     byte: usize,
@@ -87,26 +77,25 @@ impl From<toml::de::Error> for Problem {
 }
 
 fn read(text: &str) -> Result<TerrainSpec, Problem> {
-    let Form { kind } = toml::from_str(text)?;
-    let Some(kind) = kind else {
+    let Some(one) = OneLayer::find(text)? else {
         return tables(text);
     };
     let mut spec = TerrainSpec::default();
-    match kind.get_ref().as_str() {
+    match one.kind.as_str() {
         "flat" => {
-            layer::<Nothing>(text)?;
+            one.layer::<Nothing>()?;
         }
-        "slope" => spec.slope = Some(layer(text)?),
-        "ramp" => spec.ramp.push(layer(text)?),
-        "step" => spec.step.push(layer(text)?),
-        "perlin" => spec.perlin.push(layer(text)?),
-        "bumps" => spec.bumps.push(layer(text)?),
-        "course" => spec.course.push(layer(text)?),
-        "boulders" => spec.boulders.push(layer(text)?),
-        "height_map" => spec.height_map.push(layer(text)?),
+        "slope" => spec.slope = Some(one.layer()?),
+        "ramp" => spec.ramp.push(one.layer()?),
+        "step" => spec.step.push(one.layer()?),
+        "perlin" => spec.perlin.push(one.layer()?),
+        "bumps" => spec.bumps.push(one.layer()?),
+        "course" => spec.course.push(one.layer()?),
+        "boulders" => spec.boulders.push(one.layer()?),
+        "height_map" => spec.height_map.push(one.layer()?),
         other => {
             let problem = format!("unknown kind `{other}`, expected one of {KINDS}");
-            return Err(Problem { byte: kind.span().start, problem });
+            return Err(Problem { byte: one.at, problem });
         }
     }
     Ok(spec)
@@ -121,65 +110,46 @@ fn tables(text: &str) -> Result<TerrainSpec, Problem> {
     Ok(spec)
 }
 
-/// The one layer of a file with `kind`.
-fn layer<T: DeserializeOwned>(text: &str) -> Result<T, toml::de::Error> {
-    toml::from_str(text).map(|WithoutKind(layer)| layer)
+/// A file of the one layer that its key `kind` names.
+struct OneLayer {
+    kind: String,
+    /// Byte at which `kind` stands.
+    at: usize,
+    /// The text with blanks for `kind = "..."`: what is left are the layer's keys, at the places where they were.
+    keys: String,
+}
+
+impl OneLayer {
+    /// `None` of a file that has no `kind`.
+    fn find(text: &str) -> Result<Option<Self>, Problem> {
+        let table: BTreeMap<Spanned<String>, Spanned<Value>> = toml::from_str(text)?;
+        let Some((key, value)) = table.into_iter().find(|(key, _)| key.get_ref() == "kind") else {
+            return Ok(None);
+        };
+        let (at, end) = (key.span().start, value.span().end);
+        let Value::String(kind) = value.into_inner() else {
+            let problem = format!("kind is a string, one of {KINDS}");
+            return Err(Problem { byte: at, problem });
+        };
+        let mut keys = text.to_owned();
+        keys.replace_range(at..end, &" ".repeat(end - at));
+        Ok(Some(Self { kind, at, keys }))
+    }
+
+    /// The layer. A key that is missing is missing where the kind is named.
+    fn layer<T: DeserializeOwned>(&self) -> Result<T, Problem> {
+        toml::from_str(&self.keys).map_err(|error: toml::de::Error| {
+            let problem = Problem::from(error);
+            let missing = problem.problem.starts_with("missing field");
+            if missing { Problem { byte: self.at, ..problem } } else { problem }
+        })
+    }
 }
 
 /// A layer without keys.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Nothing {}
-
-/// A table read as if its key `kind` were not there. An internally tagged enum would do the same,
-/// but forget the line of every error.
-struct WithoutKind<T>(T);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for WithoutKind<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Table<T>(PhantomData<T>);
-
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for Table<T> {
-            type Value = T;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
-                T::deserialize(MapAccessDeserializer::new(SkipKind(map)))
-            }
-        }
-
-        deserializer.deserialize_map(Table(PhantomData)).map(Self)
-    }
-}
-
-/// The entries of a table but `kind`.
-struct SkipKind<A>(A);
-
-impl<'de, A: MapAccess<'de>> MapAccess<'de> for SkipKind<A> {
-    type Error = A::Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(
-        &mut self,
-        seed: K,
-    ) -> Result<Option<K::Value>, A::Error> {
-        // A key is read before one knows what it is; only then can the wanted type be made of it.
-        while let Some(key) = self.0.next_key::<Spanned<String>>()? {
-            if key.get_ref() != "kind" {
-                let key: StringDeserializer<A::Error> = key.into_inner().into_deserializer();
-                return seed.deserialize(key).map(Some);
-            }
-            self.0.next_value::<IgnoredAny>()?;
-        }
-        Ok(None)
-    }
-
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, A::Error> {
-        self.0.next_value_seed(seed)
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -230,9 +200,15 @@ mod tests {
     fn each_error_is_one_line_with_its_place() {
         let cases = [
             ("kind = \"swamp\"\n".to_owned(), "t.toml:1: unknown kind `swamp`", "course"),
-            (RAMP.replace("height_m", "height_mm"), "t.toml:", "`height_mm`"),
+            (RAMP.replace("height_m", "height_mm"), "t.toml:3: unknown field", "`height_mm`"),
+            (format!("# a ramp\n\n{RAMP}up_m = 3\n"), "t.toml:8: unknown field", "`up_m`"),
+            (format!("# a ramp\n{}", RAMP.replace("height_m", "#")), "t.toml:2: missing", "height_m"),
+            (format!("x_mm = 1\n{RAMP}"), "t.toml:1: unknown field", "`x_mm`"),
+            ("# level\n\n\"kind\" = 'flat' # so\nflat = 1".to_owned(), "t.toml:4: unknown", "`flat`"),
+            ("\nkind = 3".to_owned(), "t.toml:2: kind is a string", "ramp"),
+            (format!("\n{}", RAMP.replace("7, 8.5", "9, 8.5")), "t.toml:3: [ramp]:", "x_m must grow"),
             (RAMP.replace("0.3", "\"high\""), "t.toml:3: invalid type", "f64"),
-            (RAMP.replace("7, 8.5", "9, 8.5"), "t.toml:1: [ramp]:", "x_m must grow"),
+            (RAMP.replace("7, 8.5", "9, 8.5"), "t.toml:2: [ramp]:", "x_m must grow"),
             ("\n[ramps]\n".to_owned(), "t.toml:2: unknown field `ramps`", "`ramp`"),
             ("\n\n[perlin]\namplitude_m = 1".to_owned(), "t.toml:3: missing field", "wavelength_m"),
             ("[map]\nleave_out = [\"trees\"]".to_owned(), "t.toml:2: unknown variant", "boulders"),

@@ -81,13 +81,23 @@ pub struct Fault {
 
 impl Fault {
     /// The line of `text`, from 1, at which the table begins, where tables of a terrain stand under
-    /// `prefix` (`"terrain."` in a scenario, `""` in a terrain file); 1 if it has no header.
+    /// `prefix` (`"terrain."` in a scenario, `""` in a terrain file). In a file of one layer, which has no header, the
+    /// line of the key with which the problem begins, or of `kind`; 1 if there is neither.
     #[must_use]
     pub fn line_in(&self, text: &str, prefix: &str) -> usize {
         let headers = [format!("[{prefix}{}]", self.table), format!("[[{prefix}{}]]", self.table)];
         let begins = |line: &&str| headers.iter().any(|header| line.trim().starts_with(header));
         let numbered = text.lines().zip(1..).filter(|(line, _)| begins(line));
-        numbered.map(|(_, number)| number).nth(self.index).unwrap_or(1)
+        numbered.map(|(_, number)| number).nth(self.index).unwrap_or_else(|| {
+            let key = self.problem.split([' ', ':']).next().filter(|_| prefix.is_empty());
+            let at = |key: &str| {
+                text.lines().position(|line| {
+                    let value = line.trim_start().strip_prefix(key);
+                    value.is_some_and(|value| value.trim_start().starts_with('='))
+                })
+            };
+            key.and_then(|key| at(key).or_else(|| at("kind"))).map_or(1, |index| index + 1)
+        })
     }
 }
 

@@ -43,6 +43,18 @@ fn an_effect_that_the_ecus_of_a_scenario_do_not_hear_of_is_refused() {
 }
 
 #[test]
+fn an_overlay_that_says_nothing_of_effects_is_refused_and_one_that_says_none_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let empty = file(&folder, "empty.toml", "");
+    let talk = refusal(&["run", "2016-bend", "--effects", &empty]);
+    assert!(talk.contains("empty.toml:1: no [[effect]] in this file"), "{talk}");
+    let none = file(&folder, "none.toml", "# nothing found\neffect = []\n");
+    let scenario = file(&folder, "still.toml", SCENARIO);
+    let output = xt28(&["run", &scenario, "--effects", &none]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
 fn a_missing_scenario_file_is_named() {
     let talk = refusal(&["run", "no/such.toml"]);
     assert!(talk.contains("no/such.toml: cannot read the scenario"), "{talk}");

@@ -12,9 +12,8 @@ const LEVER_MIN_M: f64 = 0.05;
 const STOP_GIVES_M: f64 = 0.02;
 /// How far two numbers that follow from one another may part: both are rounded.
 const ROUNDING: f64 = 0.01;
-/// Least inertia of a wheel about its axle, kg m² (assumed), and least time in which its circuit may take it along, s
-/// (assumed): with either a plant has to make some twenty
-/// of a step.
+/// Least inertia of a wheel about its axle, kg m² (assumed), and least time in which its circuit may take
+/// it along, s (assumed): with either a plant has to make some twenty of a step.
 const SPIN_MIN_KG_M2: f64 = 3.0;
 const DRIVE_GRIPS_S: f64 = 0.5e-3;
 /// What may lie on either side of zero; all else is a size or a gain.

@@ -24,6 +24,7 @@ fn cause_of(effect: &'static Effect, scope: Scope, parameters: Vec<Estimate>) ->
         effect,
         scope,
         scopes: vec![(scope, 1.0)],
+        values: Vec::new(),
         probability: 0.9,
         parameters,
         class: vec![effect.name],

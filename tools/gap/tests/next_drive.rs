@@ -32,6 +32,7 @@ fn cause(name: &str, probability: f64, value: f64) -> Cause {
         effect,
         scope: "all".parse().unwrap(),
         scopes: Vec::new(),
+        values: Vec::new(),
         probability,
         parameters: vec![Estimate { name: effect.parameters[0].name, value: [value; 3] }],
         class: vec![effect.name],
@@ -51,7 +52,7 @@ fn a_late_joint_and_a_slow_one_are_told_apart_in_a_bend() {
     assert!(["s-turn", "mixed"].contains(&next.manoeuvre.as_str()), "{}", next.manoeuvre);
     assert_eq!(
         (next.manoeuvre.as_str(), next.separates),
-        (manoeuvre.name, vec!["steer-delay", "steer-lag"])
+        (manoeuvre.name, ["steer-delay", "steer-lag"].map(str::to_owned).to_vec())
     );
     let nats = next.nats.expect("it tells apart");
     assert!(nats > 1.0, "{nats}");
@@ -76,6 +77,16 @@ fn what_is_sure_needs_no_drive_nor_does_what_has_no_likely_rival() {
     assert!(of(two(0.005, 0.003), 0.99).is_none(), "the machine is sound");
     let (next, _) = of(two(0.6, 0.005), 0.3).expect("a cause or none");
     assert_eq!(next.separates, ["steer-delay", "none"]);
+}
+
+#[test]
+fn wheels_that_one_cause_may_be_at_are_told_apart() {
+    let late = cause("arm-delay", 0.98, 0.3);
+    let scopes = ["all", "FR"].map(|scope| (scope.parse().unwrap(), 0.5)).to_vec();
+    let late = Cause { scopes, values: vec![vec![0.3]; 2], ..late };
+    let (next, _) = next_drive(&inquiry(), &diagnosis(vec![late])).unwrap().unwrap();
+    assert_eq!(next.separates, ["arm-delay (all)", "arm-delay (FR)"]);
+    assert!(next.nats.is_some_and(|nats| nats > 1.0), "{:?}", next.nats);
 }
 
 #[test]

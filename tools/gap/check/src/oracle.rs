@@ -33,6 +33,7 @@ fn cause(fact: &Fact) -> Option<Cause> {
         effect,
         scope: fact.scope,
         scopes: vec![(fact.scope, 1.0)],
+        values: Vec::new(),
         probability: 1.0,
         parameters: effect.parameters.iter().map(estimate).collect(),
         class: vec![effect.name],

@@ -10,6 +10,7 @@
 mod manoeuvre;
 
 use rayon::prelude::*;
+use xt28_sim::effects::Scope;
 use xt28_sim::{Effects, Solver, Terrain};
 
 use super::generator::Generator;
@@ -20,7 +21,7 @@ use crate::{FieldLog, GapError, Replay};
 
 pub use manoeuvre::Manoeuvre;
 
-/// Causes that are told apart, at most.
+/// Causes, or wheels of one, that are told apart, at most.
 const RIVALS: usize = 3;
 /// Beyond this probability an answer has no rivals worth a drive.
 const SURE: f64 = 0.95;
@@ -29,8 +30,17 @@ const WORTH_MIN: f64 = 1.0;
 
 /// A hypothesis in the running.
 struct Rival {
-    name: &'static str,
+    /// What people are told of it.
+    name: String,
     effects: Effects,
+}
+
+/// A cause at some wheels, and how likely it is to be there.
+struct Place<'a> {
+    cause: &'a Cause,
+    scope: Scope,
+    values: Vec<f64>,
+    probability: f64,
 }
 
 /// The manoeuvre worth most of those that no run is of already, with what it separates; `None` where no
@@ -52,7 +62,7 @@ pub fn next_drive(
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut ranked = ranked.into_iter();
     Ok(ranked.next().filter(|(nats, _)| *nats >= WORTH_MIN).map(|(nats, best)| {
-        let separates = rivals.iter().map(|rival| rival.name).collect();
+        let separates = rivals.iter().map(|rival| rival.name.clone()).collect();
         let others = ranked.map(|(nats, m)| drive(diagnosis, &m, Some(nats))).collect();
         let Drive { manoeuvre, nats, tests } = drive(diagnosis, &best, Some(nats));
         (Next { manoeuvre, separates, nats, tests, others }, best)
@@ -95,8 +105,9 @@ fn is_of(path: &str, name: &str) -> bool {
     stem.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('-'))
 }
 
-/// The least certain of the causes stood by, or the likeliest of all, and what may be in its place;
-/// the other causes stood by are believed. Fewer than two where nothing is left to tell apart.
+/// The least certain of the causes stood by, or the likeliest of all, at each of the wheels that it may be at, and
+/// what may be in its place; the other causes stood by are believed. Fewer than two where nothing is left to
+/// tell apart.
 fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
     let stood: Vec<&Cause> = diagnosis.stood_by().collect();
     let Some(leader) = stood.last().copied().or_else(|| diagnosis.causes.first()) else {
@@ -109,35 +120,60 @@ fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
         return Vec::new();
     }
     let mut base = inquiry.believed.clone();
-    let apply = |effects: &mut Effects, cause: &Cause| {
-        for estimate in &cause.parameters {
-            if let Some(parameter) = cause.effect.parameter(estimate.name) {
-                let [low, high] = parameter.range;
-                parameter.set(effects, cause.scope, estimate.value[0].clamp(low, high));
-            }
-        }
-    };
     for other in stood.iter().filter(|cause| cause.effect != leader.effect) {
-        apply(&mut base, other);
+        Place::likeliest(other).apply(&mut base);
     }
-    let mut rivals: Vec<Rival> = Vec::new();
     let others = diagnosis.causes.iter().filter(|cause| {
         let stands = stood.iter().any(|stood| stood.effect == cause.effect);
-        let likely = cause.probability >= WORTH_TELLING;
-        !stands && cause.effect != leader.effect && likely
+        !stands && cause.effect != leader.effect
     });
-    let leading = std::iter::once(leader).filter(|cause| cause.probability >= WORTH_TELLING);
-    for cause in leading.chain(others) {
-        if rivals.len() < RIVALS && rivals.iter().all(|rival| rival.name != cause.effect.name) {
-            let mut effects = base.clone();
-            apply(&mut effects, cause);
-            rivals.push(Rival { name: cause.effect.name, effects });
-        }
-    }
+    let mut places = Place::all(leader);
+    places.extend(others.map(Place::likeliest));
+    places.retain(|place| place.probability >= WORTH_TELLING);
+    places.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    places.truncate(RIVALS);
+    let mut rivals: Vec<Rival> = places.iter().map(|place| place.rival(&base, &places)).collect();
     if diagnosis.probability_none >= WORTH_TELLING {
-        rivals.push(Rival { name: "none", effects: base });
+        rivals.push(Rival { name: "none".to_owned(), effects: base });
     }
     rivals
+}
+
+impl<'a> Place<'a> {
+    /// A cause at the wheels at which it is told.
+    fn likeliest(cause: &'a Cause) -> Self {
+        let values = cause.parameters.iter().map(|estimate| estimate.value[0]).collect();
+        Self { cause, scope: cause.scope, values, probability: cause.probability }
+    }
+
+    /// A cause at each of the wheels that it may be at.
+    fn all(cause: &'a Cause) -> Vec<Self> {
+        let each = cause.scopes.iter().zip(&cause.values).map(|(&(scope, share), values)| Self {
+            cause,
+            scope,
+            values: values.clone(),
+            probability: share * cause.probability,
+        });
+        let all: Vec<Self> = each.collect();
+        if all.len() > 1 { all } else { vec![Self::likeliest(cause)] }
+    }
+
+    fn apply(&self, effects: &mut Effects) {
+        for (parameter, value) in self.cause.effect.parameters.iter().zip(&self.values) {
+            let [low, high] = parameter.range;
+            parameter.set(effects, self.scope, value.clamp(low, high));
+        }
+    }
+
+    /// The rival that it is beside `base`, called by its wheels too where `all` has others of its effect.
+    fn rival(&self, base: &Effects, all: &[Self]) -> Rival {
+        let mut effects = base.clone();
+        self.apply(&mut effects);
+        let name = self.cause.effect.name;
+        let is_alone = all.iter().filter(|other| other.cause.effect.name == name).count() == 1;
+        let name = if is_alone { name.to_owned() } else { format!("{name} ({})", self.scope) };
+        Rival { name, effects }
+    }
 }
 
 /// The least that a manoeuvre is expected to give between any two rivals, nats.

@@ -43,6 +43,7 @@ mod tests {
             effect,
             scope: "all".parse().unwrap(),
             scopes: Vec::new(),
+            values: Vec::new(),
             probability,
             parameters: vec![Estimate { name: effect.parameters[0].name, value }],
             class: vec![effect.name],

@@ -143,6 +143,9 @@ pub struct Cause {
     /// Wheels that it may be at, `scope` first, each with its share of the probability, 0 to 1.
     #[serde(serialize_with = "by_wheels")]
     pub scopes: Vec<(Scope, f64)>,
+    /// Its parameters at each of `scopes`, in the order of the effect's; no part of the JSON.
+    #[serde(skip)]
+    pub values: Vec<Vec<f64>>,
     /// That this effect is at work at any wheels; calibrated, 0 to 1.
     pub probability: f64,
     /// Each parameter with its interval.
@@ -247,8 +250,9 @@ pub struct Together {
 pub struct Next {
     /// Name of the scripted manoeuvre.
     pub manoeuvre: String,
-    /// Effects that it tells apart; none where it is for what it tests alone.
-    pub separates: Vec<&'static str>,
+    /// Effects that it tells apart, with the wheels of one that may be at several; none where it is for what
+    /// it tests alone.
+    pub separates: Vec<String>,
     /// How well it tells them apart: expected logarithm of the odds, nats; `null` in JSON where it is for
     /// what it tests alone.
     pub nats: Option<f64>,

@@ -7,9 +7,9 @@ const EASILY_NATS: f64 = 7.0;
 
 /// What a drive is for, after its name: what it tells apart or, without any of that, what it tests.
 pub(super) fn purpose(next: &Next, joined_by: &str) -> String {
-    let name = |name: &&'static str| if *name == "none" { "no effect" } else { *name };
+    let name = |name| if name == "none" { "no effect" } else { name };
     if next.nats.is_some() {
-        let rivals: Vec<&str> = next.separates.iter().map(name).collect();
+        let rivals: Vec<&str> = next.separates.iter().map(String::as_str).map(name).collect();
         format!("tells {} apart", rivals.join(joined_by))
     } else {
         format!("would test {} that the runs fitted do not", effects(next.tests.len()))
@@ -47,7 +47,7 @@ mod tests {
     fn next(nats: Option<f64>) -> Next {
         Next {
             manoeuvre: String::new(),
-            separates: nats.map_or(Vec::new(), |_| vec!["a", "none"]),
+            separates: nats.map_or(Vec::new(), |_| ["a", "none"].map(str::to_owned).to_vec()),
             nats,
             tests: vec!["b", "c"],
             others: vec![Drive { manoeuvre: "straight".to_owned(), nats, tests: vec!["b"] }],

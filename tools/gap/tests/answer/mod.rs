@@ -34,6 +34,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         effect: find(name).unwrap(),
         scope: "front".parse().unwrap(),
         scopes: vec![("front".parse().unwrap(), 0.7), ("FR".parse().unwrap(), 0.3)],
+        values: Vec::new(),
         probability,
         parameters: vec![Estimate {
             name: find(name).unwrap().parameters[0].name,
@@ -77,7 +78,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Diagnosis {
         looked_ahead: true,
         next: Some(Next {
             manoeuvre: HOSTILE.to_owned(),
-            separates: vec!["arm-delay", "valve-lag"],
+            separates: ["arm-delay", "valve-lag"].map(str::to_owned).to_vec(),
             nats: Some(3.1),
             tests: vec!["steer-lag"],
             others: vec![Drive {

@@ -101,6 +101,7 @@ mod tests {
             effect: find(name).unwrap(),
             scope: Scope::All,
             scopes: vec![(Scope::All, 1.0)],
+            values: Vec::new(),
             probability: 0.9,
             parameters: Vec::new(),
             class: vec!["arm-delay"],

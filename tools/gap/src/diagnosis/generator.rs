@@ -4,6 +4,7 @@ mod arm_drive;
 mod arms;
 mod axles;
 mod bus;
+mod circuits;
 mod controllers;
 mod current_step;
 mod driving;
@@ -33,7 +34,7 @@ use super::floor::Signal;
 use super::floors::BlockKey;
 use super::signals::{Samples, Signals};
 pub(super) use bus::{PERIOD_S, command_period_s};
-pub(super) use driving::PRESSURE_AT_TORQUE_MAX_PA;
+pub(super) use circuits::PRESSURE_AT_TORQUE_MAX_PA;
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
 

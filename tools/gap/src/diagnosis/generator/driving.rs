@@ -9,9 +9,11 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::{Lag, SlipperyGround};
 use xt28_sim::{Drive, DriveInput, Effects};
 
-use super::grade::Grade;
+use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuits_pa};
+use super::grade::{Grade, climbs};
 use super::rolling::rolling_errors;
 use super::scrub::scrub_drag_nm;
+use super::traction::TURNS_RAD_S;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the block did less what was measured.
@@ -29,10 +31,6 @@ pub(super) struct DriveErrors {
 const DRAWN_S: f64 = 0.25;
 /// The frames pitch on their arms as the machine speeds up: forces balance over this time only, s.
 const FORCE_S: f64 = 2.0;
-/// Pressure for the largest torque, Pa (the machine's conventions).
-pub(in crate::diagnosis) const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
-/// Speed over which rolling resistance changes its sign, rad/s (assumed).
-pub(super) const TURNS_RAD_S: f64 = 0.05;
 
 /// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
@@ -92,23 +90,6 @@ fn wheel_speeds(signals: &Signals, effects: &Effects, i: usize) -> PerWheel<f64>
     PerWheel::from_fn(|wheel| signals.wheel_speed_rad_s[wheel][i] / scale(wheel))
 }
 
-/// Forward less reverse pressure of both circuits at sample `i`, Pa.
-fn circuits_pa(signals: &Signals, i: usize) -> [f64; 2] {
-    let measured = |side: usize| signals.pump_pressure_pa[side][i];
-    [measured(1) - measured(0), measured(3) - measured(2)]
-}
-
-/// Whether a wheel's motor is of the first circuit.
-pub(super) fn is_of_first(machine: &Machine, wheel: Wheel) -> bool {
-    machine.wheels.circuit_1.iter().any(|name| name == wheel.name())
-}
-
-/// Torque of a wheel's motor from its circuit's pressures, Nm: equal on the three of a circuit.
-pub(super) fn motor_nm(s: &Signals, machine: &Machine, wheel: Wheel, i: usize) -> f64 {
-    let over_pa = circuits_pa(s, i)[usize::from(!is_of_first(machine, wheel))];
-    over_pa * (machine.wheels.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA)
-}
-
 /// Torque that the motion takes less the torque there was, mean of the wheels, Nm, where idle motors hold
 /// by up to `idle_nm`. `NaN` on ground that is no plane: where each wheel stands is then not known well enough.
 fn force_error_nm(
@@ -165,30 +146,6 @@ fn force_error_nm(
         })
         .collect();
     moving_mean(&errors, FORCE_S)
-}
-
-/// Sine of the grade that the machine climbs at sample `i`: each frame climbs along its own heading, by
-/// its share of the weight.
-#[allow(clippy::cast_precision_loss)]
-pub(super) fn climbs(
-    signals: &Signals,
-    machine: &Machine,
-    effects: &Effects,
-    ground: Grade,
-    i: usize,
-) -> f64 {
-    let front = signals.heading_near(i as f64 * DT_S).unwrap_or_default();
-    let middle = front - signals.joint_rad[0][i];
-    let rear = middle - signals.joint_rad[1][i];
-    let (m, payload_kg) = (&machine.masses, effects.masses.payload.mass_kg);
-    let axle_kg = 2.0 * (m.arm_kg + m.wheel_kg);
-    let frames = [
-        (front, m.front_frame_kg + axle_kg),
-        (middle, m.middle_frame_kg + axle_kg),
-        (rear, m.rear_frame_kg + axle_kg + payload_kg),
-    ];
-    let along = |(heading, kg): (f64, f64)| kg * ground.climb(heading);
-    frames.map(along).iter().sum::<f64>() / (machine.mass_kg() + payload_kg)
 }
 
 #[cfg(test)]

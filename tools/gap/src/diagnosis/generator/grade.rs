@@ -1,8 +1,9 @@
 //! How the ground under a run leans: what is known of it, and what is believed beside.
 
+use xt28_machine::Machine;
 use xt28_sim::{Effects, Terrain};
 
-use crate::diagnosis::signals::Signals;
+use crate::diagnosis::signals::{DT_S, Signals};
 
 /// A plane that wheels roll on.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,6 +53,30 @@ impl Grade {
         let [ahead, _] = self.rises(along(heading_rad));
         1.0 / 1.0_f64.hypot(ahead)
     }
+}
+
+/// Sine of the grade that the machine climbs at sample `i`: each frame climbs along its own heading, by
+/// its share of the weight.
+#[allow(clippy::cast_precision_loss)]
+pub(super) fn climbs(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    ground: Grade,
+    i: usize,
+) -> f64 {
+    let front = signals.heading_near(i as f64 * DT_S).unwrap_or_default();
+    let middle = front - signals.joint_rad[0][i];
+    let rear = middle - signals.joint_rad[1][i];
+    let (m, payload_kg) = (&machine.masses, effects.masses.payload.mass_kg);
+    let axle_kg = 2.0 * (m.arm_kg + m.wheel_kg);
+    let frames = [
+        (front, m.front_frame_kg + axle_kg),
+        (middle, m.middle_frame_kg + axle_kg),
+        (rear, m.rear_frame_kg + axle_kg + payload_kg),
+    ];
+    let along = |(heading, kg): (f64, f64)| kg * ground.climb(heading);
+    frames.map(along).iter().sum::<f64>() / (machine.mass_kg() + payload_kg)
 }
 
 fn along(heading_rad: f64) -> [f64; 2] {

@@ -8,7 +8,7 @@ use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::axles::Axles;
-use super::driving::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
+use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
 use super::grade::Grade;
 use super::press::{normal_n, own_n, rolling_radius_m};
 use super::stance::{Held, Holds};

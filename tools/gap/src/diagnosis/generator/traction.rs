@@ -7,7 +7,7 @@
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};
 
-use super::driving::{TURNS_RAD_S, is_of_first, motor_nm};
+use super::circuits::{is_of_first, motor_nm};
 use crate::diagnosis::signals::{SMOOTHED, Samples, Signals, smooth};
 
 /// Push over friction up to which a wheel surely holds, and from which on it surely slides: pressures come
@@ -17,6 +17,8 @@ const HOLDS: [f64; 2] = [0.8, 1.2];
 /// (assumed).
 const CAUGHT_M_S: f64 = 0.1;
 const CAUGHT_S: f64 = 0.5;
+/// Speed over which rolling resistance changes its sign, rad/s (assumed).
+pub(super) const TURNS_RAD_S: f64 = 0.05;
 /// Samples from one look to the next where a push that smooth wheel speeds tell before it is there is sought.
 const APART: usize = 10;
 
@@ -123,7 +125,7 @@ impl Traction {
 
 #[cfg(test)]
 mod tests {
-    use super::super::driving::PRESSURE_AT_TORQUE_MAX_PA;
+    use super::super::circuits::PRESSURE_AT_TORQUE_MAX_PA;
     use super::super::still::still;
     use super::*;
 

@@ -12,8 +12,7 @@ use xt28_sim::{Effects, Parts};
 
 use super::instants::pump_torque_nm;
 use super::motion::{lagged, unflickered};
-use crate::diagnosis::generator::driving::climbs;
-use crate::diagnosis::generator::grade::Grade;
+use crate::diagnosis::generator::grade::{Grade, climbs};
 use crate::diagnosis::generator::press::{normal_n, own_n};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 

@@ -5,7 +5,7 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 use super::filter::{felt_rad, headings_felt};
 use super::motion::{Motion, lagged};
 use crate::diagnosis::gauge::rod_n;
-use crate::diagnosis::generator::driving::motor_nm;
+use crate::diagnosis::generator::circuits::motor_nm;
 use crate::diagnosis::generator::loads::is_off_scale;
 use crate::diagnosis::generator::position_control::end_of;
 use crate::diagnosis::instant::{AtWheel, Instant};

@@ -177,7 +177,8 @@ fn lost_commands_are_counted_and_taken_for_nothing_else() {
         }
     };
     let run = "run-1-arm_step.log.gz";
-    let Some((evidence, values)) = fitted_after("frame-loss", Scope::All, run, "", lose) else {
+    let Some((evidence, values)) = fitted_after("frame-loss", Scope::All, run, "effect = []", lose)
+    else {
         return;
     };
     assert!(evidence > 50.0, "{evidence}");

@@ -5,6 +5,10 @@
 //! leaves out is in [`effects`]. Nothing here knows of frames or of a bus.
 #![forbid(unsafe_code)]
 
+// Under its own name too, for a rig that unit and integration tests share.
+#[cfg(test)]
+extern crate self as xt28_sim;
+
 mod actuation;
 mod actuators;
 mod blocks;

@@ -1,10 +1,10 @@
 //! Tyres and masses of the fast core alone, driven by the whole vehicle's own signals.
 
-use std::sync::Arc;
+#[path = "../../tests/tyre_rig/mod.rs"]
+mod tyre_rig;
 
 use glam::{DQuat, DVec3};
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, TyreModel, Wheel};
-use xt28_terrain::{Extent, Grid};
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 
 use super::ReducedBodies;
 use super::contact::Body;
@@ -13,30 +13,14 @@ use super::spatial::{angular, linear};
 use super::tests::momenta;
 use super::touch::{Search, patch};
 use super::tree::Tree;
-use crate::effects::{SlipperyGround, SoftTyre};
 use crate::{Actuation, Effects, Parts, Plant, STEP, Terrain, Vehicle};
 
-/// Slopes of some 15 degrees and bumps half a wheel long, so that wheels touch in several points.
-fn rough() -> Terrain {
-    Terrain::Grid(Arc::new(Grid::from_fn(Extent::default(), |x, y| {
-        0.15 * (1.1 * x).sin() * (0.9 * y + 0.4).cos() + 0.03 * (8.0 * x - 2.0 * y).sin()
-    })))
-}
-
-/// The nominal machine, and one on soft brush tyres on slippery ground, each tyre a little different, with a load.
+/// The machines of the tyres' rig, the soft one with a load.
 fn machines() -> [(Machine, Effects); 2] {
-    let mut soft = (Machine::xt28(), Effects::default());
-    soft.0.vehicle.tyre_model = TyreModel::Brush;
+    let [nominal, mut soft] = tyre_rig::machines();
     soft.1.masses.payload.mass_kg = 5000.0;
     soft.1.masses.com_shift.y_m = 0.2;
-    for wheel in Wheel::ALL {
-        let more = 1.0 + 0.1 * wheel.index() as f64;
-        let w = &mut soft.1.wheels[wheel];
-        w.soft_tyre = SoftTyre { stiffness_n_m: 6e5 * more, damping_n_s_m: 1.5e4 };
-        w.slippery_ground =
-            SlipperyGround { friction_factor: 0.5 * more, slip: 0.05, creep_m_s_n: 5e-6 };
-    }
-    [(Machine::xt28(), Effects::default()), soft]
+    [nominal, soft]
 }
 
 /// Drives for 10 s in bends with all arms moving; `see` gets the state before and the bodies after each step.
@@ -77,7 +61,7 @@ fn ended(after: &State, dt_s: f64) -> Generalized {
 #[test]
 fn tyres_alone_reproduce_the_whole() {
     let dt_s = STEP.as_secs_f64();
-    for terrain in [Terrain::Flat, rough()] {
+    for terrain in [Terrain::Flat, tyre_rig::rough()] {
         for made in &machines() {
             let tree = Tree::new(&Parts::new(&made.0, &made.1));
             let mut search = Search::new(terrain.clone());
@@ -122,7 +106,7 @@ fn momentum(tree: &Tree, state: &State) -> DVec3 {
 #[test]
 fn masses_alone_reproduce_the_whole() {
     let dt_s = STEP.as_secs_f64();
-    for terrain in [Terrain::Flat, rough()] {
+    for terrain in [Terrain::Flat, tyre_rig::rough()] {
         for made in &machines() {
             let tree = Tree::new(&Parts::new(&made.0, &made.1));
             let weight_n = GRAVITY_M_S2 * (made.0.mass_kg() + made.1.masses.payload.mass_kg);

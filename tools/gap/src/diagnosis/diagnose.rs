@@ -11,7 +11,7 @@ use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, Held, judge};
 use super::knob::{Knob, SHIFT_MAX};
-use super::overlap::own_share;
+use super::overlap::{Paid, own_share};
 use super::signals::Signals;
 use super::verdict::Diagnosis;
 
@@ -175,12 +175,16 @@ fn owned(
     beside: &Docket,
 ) -> (Vec<[Candidate; 2]>, Vec<Left>) {
     let Some([one, _]) = pairs.first() else { return (pairs, Vec::new()) };
-    let (none, explained) = (first.left(&[]), first.left(&[&one.fit]));
-    let alone = beside.left(&[]);
+    let paid = |docket: &Docket, fits: &[&Fit]| Paid {
+        left: docket.left(fits),
+        shifts: docket.shifts(fits),
+    };
+    let (none, explained) = (paid(first, &[]), paid(first, &[&one.fit]));
+    let alone = paid(beside, &[]);
     let weigh = |[one, mut second]: [Candidate; 2]| {
-        let both = beside.left(&[&second.fit]);
+        let both = paid(beside, &[&second.fit]);
         second.own_share = own_share([&none, &explained], [&alone, &both]);
-        ([one, second], both)
+        ([one, second], both.left)
     };
     let mut all: Vec<_> = pairs.into_iter().map(weigh).collect();
     all.retain(|([_, second], _)| second.score() > SECOND_MIN);

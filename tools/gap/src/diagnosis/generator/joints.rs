@@ -71,6 +71,8 @@ pub(super) fn joint_errors(
     // would be less without a play: counted as that, sound machines get one (docs/diagnosis-log.md, item 48).
     let excused = (half_play / EXCUSED_RAD).powi(2).min(1.0);
     let mut is_free = vec![false; signals.len];
+    // Until the first turn of a run a joint stands as it would without a play, and costs no more.
+    let untouched = untouched(angle, &signals.steer_opening[joint]);
     let mut let_go_rad_s = vec![0.0; signals.len];
     let error: Samples = (0..signals.len)
         .map(|i| {
@@ -83,6 +85,9 @@ pub(super) fn joint_errors(
             }
             let gap = oil_rad - angle[i];
             let twist = gap - gap.clamp(-half_play, half_play);
+            if i < untouched {
+                return gap - taken_nm / stiffness_nm;
+            }
             is_free[i] = half_play > 0.0 && twist == 0.0;
             if is_free[i] {
                 return 0.0;
@@ -97,6 +102,15 @@ pub(super) fn joint_errors(
         fast_rad[i] = excused * ORDINARY[1] * Signal::JointFast.floor().sigma;
     }
     JointErrors { slow_rad, fast_rad, relief_rad_s: moving_mean(&let_go_rad_s, SLOW_S) }
+}
+
+/// The first instant at which a joint has been turned, by its valve or by the ground.
+fn untouched(angle_rad: &[f64], openings: &[f64]) -> usize {
+    let start_rad = angle_rad.first().copied().unwrap_or_default();
+    let mut instants = angle_rad.iter().zip(openings);
+    let is_touched =
+        |(angle, opening): (&f64, &f64)| *opening != 0.0 || (angle - start_rad).abs() > EXCUSED_RAD;
+    instants.position(is_touched).unwrap_or(angle_rad.len())
 }
 
 /// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.
@@ -130,6 +144,28 @@ mod tests {
         let errors = joint_errors(&signals, &machine, &effects, 0);
         let largest = errors.relief_rad_s.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
         largest / Signal::JointRelief.floor().sigma
+    }
+
+    /// What it costs, in squares of floors, to believe that a front joint has a play, its valve half open from
+    /// `from` to `to`.
+    fn costs(from: usize, to: usize) -> f64 {
+        let (machine, mut effects) = (Machine::xt28(), Effects::default());
+        effects.steering.backlash.width_rad = 0.03;
+        let mut signals = still(10);
+        signals.steer_opening[0][from..to].fill(-0.5);
+        let slow = joint_errors(&signals, &machine, &effects, 0).slow_rad;
+        let sigma = Signal::JointAngle.floor().sigma;
+        slow.iter().map(|rad| (rad / sigma).powi(2)).sum()
+    }
+
+    #[test]
+    fn a_play_costs_nothing_until_somebody_steers() {
+        assert_eq!(costs(0, 0), 0.0);
+        let signals = still(10);
+        assert_eq!(untouched(&signals.joint_rad[0], &signals.steer_opening[0]), signals.len);
+        // Held within the play from the first turn on.
+        assert!(costs(500, 501) > 0.3 * signals.len as f64, "{}", costs(500, 501));
+        assert!(costs(500, 501) < 0.35 * signals.len as f64, "{}", costs(500, 501));
     }
 
     #[test]

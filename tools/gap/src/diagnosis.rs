@@ -10,6 +10,7 @@
 
 mod belief;
 mod candidates;
+mod chamber_order;
 pub mod details;
 mod diagnose;
 mod evidence;
@@ -40,6 +41,7 @@ mod wheel_order;
 
 pub use belief::{Base, Belief};
 pub use candidates::Candidate;
+pub use chamber_order::{SwappedChambers, swapped_chambers};
 pub use details::Details;
 pub use diagnose::Progress;
 pub use evidence::{Echo, Evidence, Left};

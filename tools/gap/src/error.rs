@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{LoadScale, OddHeading, Swap};
+use crate::diagnosis::{LoadScale, OddHeading, Swap, SwappedChambers};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -246,6 +246,14 @@ pub enum GapError {
         possible: [f64; 2],
         /// SI unit.
         unit: &'static str,
+    },
+    /// The pressures of a cylinder's chambers are in each other's places.
+    #[error(
+        "the chambers of a cylinder look swapped: {swapped}, for so they make the load that the frames tell; mend DBC or mapping"
+    )]
+    ChamberOrder {
+        /// Where.
+        swapped: SwappedChambers,
     },
     /// The chambers' pressures and the cylinders' loads are not on one scale.
     #[error(

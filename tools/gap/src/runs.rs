@@ -10,7 +10,9 @@ use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::{FieldRun, Inquiry, Signals, load_scale, odd_heading, swapped_wheels};
+use crate::diagnosis::{
+    FieldRun, Inquiry, Signals, load_scale, odd_heading, swapped_chambers, swapped_wheels,
+};
 use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
@@ -160,8 +162,11 @@ impl RunSet {
     /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
     ///
     /// # Errors
-    /// [`GapError::LoadScale`] and [`GapError::HeadingSense`].
+    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`] and [`GapError::HeadingSense`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+        if let Some(swapped) = swapped_chambers(runs) {
+            return Err(GapError::ChamberOrder { swapped });
+        }
         if let Some(scale) = load_scale(runs) {
             return Err(GapError::LoadScale { scale });
         }
@@ -172,9 +177,8 @@ impl RunSet {
     /// look swapped.
     ///
     /// # Errors
-    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::LoadScale`] the wheels whose pressures
-    /// and loads do not belong together, [`GapError::HeadingSense`] how the heading counts,
-    /// [`GapError::WheelOrder`] the wheels that look swapped.
+    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::WheelOrder`] the wheels that look
+    /// swapped; and as [`RunSet::ensure_agreeing`].
     pub fn into_field_runs(
         self,
         choice: &Choice,

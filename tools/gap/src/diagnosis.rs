@@ -8,6 +8,7 @@
 //! | what ordinary tolerances explain | [`Knob`]s, all at once, in [`Evidence`] |
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
+mod attitude_scale;
 mod belief;
 mod candidates;
 mod chamber_order;
@@ -34,11 +35,13 @@ mod overlap;
 mod scales;
 mod search;
 mod signals;
+mod speed_scale;
 mod stands;
 mod unshrunk;
 mod verdict;
 mod wheel_order;
 
+pub use attitude_scale::{AttitudeScale, attitude_scale};
 pub use belief::{Base, Belief};
 pub use candidates::Candidate;
 pub use chamber_order::{SwappedChambers, swapped_chambers};
@@ -63,6 +66,7 @@ pub use scales::{Chances, Grounds, Scales};
 pub use search::search;
 pub use signals::{DT_S, Samples, Signals};
 pub(crate) use signals::{needed, sampled};
+pub use speed_scale::{SpeedScale, speed_scale};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
     Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{LoadScale, OddHeading, Swap, SwappedChambers};
+use crate::diagnosis::{AttitudeScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -262,6 +262,22 @@ pub enum GapError {
     LoadScale {
         /// Where, and by how much.
         scale: LoadScale,
+    },
+    /// Wheel speeds are not on the scale of the receiver's ways and the throttle.
+    #[error(
+        "the wheels roll {scale}, which no machine does; check unit and factor of the wheel speeds in DBC and mapping"
+    )]
+    SpeedScale {
+        /// By how much.
+        scale: SpeedScale,
+    },
+    /// Roll or pitch is not on the scale of the strokes.
+    #[error(
+        "the machine's attitude is not what its strokes make it: {scale} what they say; check unit and factor of it in DBC and mapping"
+    )]
+    AttitudeScale {
+        /// Which, and by how much.
+        scale: AttitudeScale,
     },
     /// The heading is not the way in which the fixes go.
     #[error(

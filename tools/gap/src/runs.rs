@@ -11,7 +11,8 @@ use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
 use crate::diagnosis::{
-    FieldRun, Inquiry, Signals, load_scale, odd_heading, swapped_chambers, swapped_wheels,
+    FieldRun, Inquiry, Signals, attitude_scale, load_scale, odd_heading, speed_scale,
+    swapped_chambers, swapped_wheels,
 };
 use crate::{About, Decoder, FieldLog, GapError};
 
@@ -162,7 +163,8 @@ impl RunSet {
     /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
     ///
     /// # Errors
-    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`] and [`GapError::HeadingSense`].
+    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::SpeedScale`],
+    /// [`GapError::HeadingSense`] and [`GapError::AttitudeScale`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
         if let Some(swapped) = swapped_chambers(runs) {
             return Err(GapError::ChamberOrder { swapped });
@@ -170,7 +172,13 @@ impl RunSet {
         if let Some(scale) = load_scale(runs) {
             return Err(GapError::LoadScale { scale });
         }
-        odd_heading(runs).map_or(Ok(()), |odd| Err(GapError::HeadingSense { odd }))
+        if let Some(scale) = speed_scale(runs) {
+            return Err(GapError::SpeedScale { scale });
+        }
+        if let Some(odd) = odd_heading(runs) {
+            return Err(GapError::HeadingSense { odd });
+        }
+        attitude_scale(runs).map_or(Ok(()), |scale| Err(GapError::AttitudeScale { scale }))
     }
 
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may

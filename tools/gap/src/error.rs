@@ -306,6 +306,21 @@ pub enum GapError {
         /// The log that is the same.
         again: String,
     },
+    /// Two files hold parts of one log that overlap.
+    #[error(
+        "{again}: its {:.1} to {:.1} s are {:.1} to {:.1} s of {first}, reading by reading; cut them from one of the two, or leave one out, for what is fitted on cannot be held out as well",
+        again_s[0], again_s[1], first_s[0], first_s[1]
+    )]
+    SharedTime {
+        /// The log given first.
+        first: String,
+        /// From when to when in it, s.
+        first_s: [f64; 2],
+        /// The log that holds the same time.
+        again: String,
+        /// From when to when in it, s.
+        again_s: [f64; 2],
+    },
     /// No run goes by a name.
     #[error("no run `{name}`; there are {known}: give a file name, a number or a scenario")]
     NoSuchRun {

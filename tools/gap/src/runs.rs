@@ -2,6 +2,7 @@
 
 mod attended;
 mod choice;
+mod shared_time;
 mod soundness;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +19,7 @@ use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
+use shared_time::{SharedTime, shared_time};
 
 /// Logs of one machine, in the order given, no two the same.
 #[derive(Clone, Debug)]
@@ -56,7 +58,7 @@ impl RunSet {
     ///
     /// # Errors
     /// [`GapError`]: what cannot be read, what cannot be diagnosed (too short, without a signal, on a
-    /// clock that steps, with values that cannot be), and two files that hold one log.
+    /// clock that steps, with values that cannot be), and two files that hold one log or parts of it that overlap.
     pub fn load(
         paths: &[PathBuf],
         decoder: &Decoder,
@@ -109,14 +111,14 @@ impl RunSet {
     /// The set of `runs`, with what there is to say of them.
     ///
     /// # Errors
-    /// [`GapError::SameLog`] where two hold one log.
+    /// [`GapError::SameLog`] where two hold one log, [`GapError::SharedTime`] where they hold a part of one.
     pub fn new(runs: Vec<KnownRun>, notes: Vec<String>) -> Result<Self, GapError> {
-        for (i, run) in runs.iter().enumerate() {
-            if let Some(before) = runs[..i].iter().find(|before| same(&before.log, &run.log)) {
-                let (first, again) = (before.log.name().to_owned(), run.log.name().to_owned());
-                return Err(GapError::SameLog { first, again });
-            }
-        }
+        let before = |i: usize| runs[..i].iter().map(move |before| (before, i));
+        let pairs: Vec<_> = (0..runs.len()).flat_map(before).collect();
+        let apart = |(before, i): &(&KnownRun, usize)| each_its_own(&before.log, &runs[*i].log);
+        // In order, so that of several errors it is always the same that is told.
+        let answers: Vec<_> = pairs.par_iter().map(apart).collect();
+        answers.into_iter().collect::<Result<(), GapError>>()?;
         Ok(Self { runs, notes })
     }
 
@@ -206,6 +208,17 @@ impl RunSet {
             _ => Ok(runs),
         }
     }
+}
+
+/// Refuses two logs that are one, or parts of one that overlap.
+fn each_its_own(first: &FieldLog, again: &FieldLog) -> Result<(), GapError> {
+    let [of_first, of_again] = [first, again].map(|log| log.name().to_owned());
+    if same(first, again) {
+        return Err(GapError::SameLog { first: of_first, again: of_again });
+    }
+    shared_time(first, again).map_or(Ok(()), |SharedTime { first_s, again_s }| {
+        Err(GapError::SharedTime { first: of_first, first_s, again: of_again, again_s })
+    })
 }
 
 /// One log under two names: the same samples at the same instants.

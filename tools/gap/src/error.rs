@@ -176,7 +176,7 @@ pub enum GapError {
     },
     /// Logs of several folders, and what was found beside the first speaks of the first's folder alone.
     #[error(
-        "{about} lies beside the first log and {log} elsewhere, so it would be given another day's ground; say --about FILE with a [[run]] for each, or give runs of one folder"
+        "{about} lies beside the first log and {log} elsewhere, so it would be given another day's ground; say --about FILE with a [[run]] for each (file = \"FOLDER/NAME\" where two have one name), or give runs of one folder"
     )]
     OtherFolder {
         /// The file found.
@@ -330,7 +330,9 @@ pub enum GapError {
         known: String,
     },
     /// Several runs go by a name that should mean one.
-    #[error("`{name}` may mean {runs}; give the file name, and no two files of one name")]
+    #[error(
+        "`{name}` may mean {runs}; give the file name, with its folder where two have one name"
+    )]
     AmbiguousRun {
         /// The name.
         name: String,

@@ -2,6 +2,7 @@
 
 mod attended;
 mod choice;
+mod names;
 mod shared_time;
 mod soundness;
 
@@ -19,6 +20,7 @@ use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
+use names::{ensure_told_apart, names};
 use shared_time::{SharedTime, shared_time};
 
 /// Logs of one machine, in the order given, no two the same.
@@ -31,7 +33,7 @@ pub struct RunSet {
 /// One log with what is known of it.
 #[derive(Clone, Debug)]
 pub struct KnownRun {
-    /// File name, without its folder.
+    /// File name, with its folder where another run has the same.
     pub file: String,
     /// What was driven, where `about.toml` says.
     pub scenario: Option<String>,
@@ -67,7 +69,10 @@ impl RunSet {
     ) -> Result<Self, GapError> {
         let about = known.about.map(About::load).transpose()?;
         let one_ground = known.terrain.map(Terrain::load).transpose()?;
-        let read = |path: &PathBuf| {
+        if let (Some(about), Some(file)) = (&about, known.about) {
+            ensure_told_apart(about, file, paths)?;
+        }
+        let read = |(path, file): (&PathBuf, String)| {
             let told = match (&about, known.about) {
                 (Some(about), Some(file)) => {
                     let told = about.run_of(path);
@@ -89,7 +94,7 @@ impl RunSet {
             let (log, note) = attended(log);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
-                file: file_name(path),
+                file,
                 scenario: told.and_then(|run| run.scenario.clone()),
                 advised: told.map(|run| run.fit),
                 terrain: ground,
@@ -97,7 +102,9 @@ impl RunSet {
             };
             Ok((run, note))
         };
-        let read: Vec<_> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
+        let called = names(paths);
+        let read: Vec<_> =
+            paths.par_iter().zip(called).map(read).collect::<Result<_, GapError>>()?;
         let (runs, left_out): (Vec<KnownRun>, Vec<Option<String>>) = read.into_iter().unzip();
         let mut notes: Vec<String> = left_out.into_iter().flatten().collect();
         if one_ground.is_none() && about.is_none() {
@@ -198,7 +205,7 @@ impl RunSet {
         let runs: Vec<FieldRun> = used
             .map(|(run, used)| {
                 let field_run = FieldRun::new(run.log, run.terrain, *used == Use::Fit)?;
-                Ok(field_run.driven(run.scenario))
+                Ok(field_run.driven(run.scenario).called(run.file))
             })
             .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();

@@ -27,7 +27,7 @@ pub type Samples = Vec<f64>;
 /// One run, ready for diagnosis. Where a channel is missing its samples are empty.
 #[derive(Clone, Debug)]
 pub struct Signals {
-    /// Name of the log.
+    /// Name of the log, or what its run is called.
     pub name: String,
     /// The ground it was driven on, as far as one knows.
     pub terrain: Terrain,

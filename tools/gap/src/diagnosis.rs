@@ -60,6 +60,7 @@ pub use judgement::Findings;
 pub(crate) use knob::SHIFT_MAX;
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub use load_scale::{LoadScale, load_scale};
+pub(crate) use next_drive::scripted_drive;
 pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use noise::with_noise_of;
 pub use scales::{Chances, Grounds, Scales};

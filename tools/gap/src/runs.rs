@@ -2,6 +2,7 @@
 
 mod attended;
 mod choice;
+mod claims;
 mod names;
 mod shared_time;
 mod soundness;
@@ -91,6 +92,10 @@ impl RunSet {
             };
             let log = FieldLog::load(path, decoder, accept_cut)?;
             soundness::one_clock(&log)?;
+            let claims = match (&about, known.about, told) {
+                (Some(about), Some(file), Some(run)) => claims::denied(about, file, run, &log),
+                _ => Vec::new(),
+            };
             let (log, note) = attended(log);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
@@ -100,13 +105,13 @@ impl RunSet {
                 terrain: ground,
                 log,
             };
-            Ok((run, note))
+            Ok((run, claims.into_iter().chain(note).collect()))
         };
         let called = names(paths);
         let read: Vec<_> =
             paths.par_iter().zip(called).map(read).collect::<Result<_, GapError>>()?;
-        let (runs, left_out): (Vec<KnownRun>, Vec<Option<String>>) = read.into_iter().unzip();
-        let mut notes: Vec<String> = left_out.into_iter().flatten().collect();
+        let (runs, told): (Vec<KnownRun>, Vec<Vec<String>>) = read.into_iter().unzip();
+        let mut notes = told.concat();
         if one_ground.is_none() && about.is_none() {
             notes.push(
                 "No word on the ground: every run is taken as driven on level ground.".to_owned(),

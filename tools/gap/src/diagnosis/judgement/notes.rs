@@ -86,16 +86,14 @@ impl Findings {
         })
     }
 
-    /// How much of what there is to explain beyond the floors the best cause or pair does, in nats of both: where
-    /// next to nothing, something fits best all the same.
+    /// How much of the squares of all gaps beyond their floors the best cause or pair takes away, beside tolerances
+    /// that are the same with it and without: where next to nothing, something fits best all the same.
     fn explained_share(&self) -> f64 {
-        let explained: f64 = self.believed().map(|cause| cause.score().max(0.0)).sum();
-        let beyond = |left: &Left| {
-            let floor = Left { square: 1.0, ..*left };
-            (left.cost() - floor.cost()).max(0.0)
+        let beyond = |all: &[Left]| -> f64 {
+            all.iter().map(|left| (left.square - 1.0).max(0.0) * left.samples).sum()
         };
-        let left: f64 = self.after.iter().map(beyond).sum();
-        explained / (explained + left).max(f64::MIN_POSITIVE)
+        let there = beyond(&self.apart).max(f64::MIN_POSITIVE);
+        1.0 - beyond(&self.after) / there
     }
 
     fn why_unknown(&self) -> String {
@@ -129,20 +127,24 @@ mod tests {
 
     #[test]
     fn what_fits_best_is_named_only_where_it_explains_a_fair_share() {
-        let of = |nats: f64| {
-            let after = vec![Left::evenly(Generator::Stance, Signal::Roll, 400.0, 100.0)];
-            let single = vec![Candidate::made_up("soft-tyres", Scope::All, nats)];
-            let unbent = after.clone();
-            Findings { single, unbent, after, ..Findings::default() }.why_unknown()
+        let of = |square: f64| {
+            let left = |square| vec![Left::evenly(Generator::Stance, Signal::Roll, square, 100.0)];
+            let single = vec![Candidate::made_up("soft-tyres", Scope::All, 90.0)];
+            let [unbent, apart, after] = [400.0, 400.0, square].map(left);
+            Findings { single, unbent, apart, after, ..Findings::default() }.why_unknown()
         };
-        assert!(of(400.0).starts_with("soft-tyres (all) fits best"), "{}", of(400.0));
-        let little = of(20.0);
-        assert!(little.starts_with("nothing in the catalogue explains more than "), "{little}");
+        assert!(of(200.0).starts_with("soft-tyres (all) fits best"), "{}", of(200.0));
+        let little = of(380.0);
+        assert!(little.starts_with("nothing in the catalogue explains more than 5 %"), "{little}");
         assert!(
             !little.contains("soft-tyres") && little.contains("of the roll of stance"),
             "{little}"
         );
-        assert!(of(-3.0).starts_with("nothing in the catalogue explains anything"), "{}", of(-3.0));
+        assert!(
+            of(400.0).starts_with("nothing in the catalogue explains anything"),
+            "{}",
+            of(400.0)
+        );
     }
 
     #[test]

@@ -26,13 +26,15 @@ pub struct About {
     pub dbc: Option<String>,
     /// The logs.
     pub run: Vec<Run>,
+    #[serde(skip)]
+    text: String,
 }
 
 /// One log.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
-    /// File name, beside `about.toml`.
+    /// File name, beside `about.toml`, with folders before it where two logs have one name.
     pub file: String,
     /// What was driven.
     pub scenario: Option<String>,
@@ -74,7 +76,7 @@ impl About {
     /// descriptions of one file.
     pub fn parse(text: &str, path: &Path) -> Result<Self, GapError> {
         let refuse = |(line, problem)| GapError::Toml { path: path.to_owned(), line, problem };
-        let about: Self = toml::from_str(text).map_err(|error| refuse(locate(text, &error)))?;
+        let mut about: Self = toml::from_str(text).map_err(|error| refuse(locate(text, &error)))?;
         for (i, run) in about.run.iter().enumerate() {
             if about.run[..i].iter().any(|before| before.file == run.file) {
                 let lines = text.lines().enumerate().filter(|(_, line)| line.contains(&run.file));
@@ -91,14 +93,31 @@ impl About {
                 return Err(refuse((line.map_or(1, |line| line + 1), problem)));
             }
         }
+        about.text = text.to_owned();
         Ok(about)
     }
 
-    /// The run whose log has the file name of `log`.
+    /// The run whose log has the file name of `log`, and its folders as far as it names them; the one that names
+    /// most of them.
     #[must_use]
     pub fn run_of(&self, log: &Path) -> Option<&Run> {
-        let name = log.file_name()?.to_str()?;
-        self.run.iter().find(|run| run.file == name)
+        let named = self.run.iter().filter(|run| log.ends_with(&run.file));
+        named.max_by_key(|run| Path::new(&run.file).components().count())
+    }
+
+    /// Line, from 1, at which `key` of `run` is said; where that is not found, the run's own.
+    pub(crate) fn line_of(&self, run: &Run, key: &str) -> usize {
+        let lines = || self.text.lines().enumerate().map(|(k, line)| (k + 1, line.trim_start()));
+        let file = lines().find(|(_, line)| line.contains(&format!("\"{}\"", run.file)));
+        let at = file.map_or(1, |(line, _)| line);
+        let begins = lines().filter(|(line, text)| *line <= at && text.starts_with("[[")).last();
+        let ends = lines().find(|(line, text)| *line > at && text.starts_with("[["));
+        let within = begins.map_or(0, |(line, _)| line)..ends.map_or(usize::MAX, |(line, _)| line);
+        let is_key = |text: &str| {
+            text.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with('='))
+        };
+        let said = lines().find(|(line, text)| within.contains(line) && is_key(text));
+        said.map_or(at, |(line, _)| line)
     }
 
     /// The ground that `log` was driven on, as the file at `path` says.
@@ -168,6 +187,17 @@ ramp = { x_m = [4, 7, 8.5, 11.5], height_m = 0.3, y_min_m = -1.9, y_max_m = -0.5
         assert!((ramp.height_m(8.0, -1.0) - 0.3).abs() < 1e-6);
         assert!(ramp.height_m(8.0, 1.0).abs() < 1e-6);
         assert!(about.run_of(Path::new("other.log")).is_none());
+        let lines =
+            [(&about.run[0], "fit"), (&about.run[1], "terrain"), (&about.run[1], "seconds")];
+        assert_eq!(lines.map(|(run, key)| about.line_of(run, key)), [7, 10, 9]);
+    }
+
+    #[test]
+    fn a_run_that_names_its_folder_is_of_no_other() {
+        let about = parse(&ABOUT.replace("ramp.log", "monday/flat.log.gz")).unwrap();
+        let of = |log: &str| about.run_of(Path::new(log)).map(|run| run.file.as_str());
+        assert_eq!(of("days/monday/flat.log.gz"), Some("monday/flat.log.gz"));
+        assert_eq!(of("days/sunday/flat.log.gz"), Some("flat.log.gz"));
     }
 
     #[test]

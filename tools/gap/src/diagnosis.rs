@@ -8,8 +8,10 @@
 //! | what ordinary tolerances explain | [`Knob`]s, all at once, in [`Evidence`] |
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
+mod attitude_scale;
 mod belief;
 mod candidates;
+mod chamber_order;
 pub mod details;
 mod diagnose;
 mod evidence;
@@ -33,13 +35,16 @@ mod overlap;
 mod scales;
 mod search;
 mod signals;
+mod speed_scale;
 mod stands;
 mod unshrunk;
 mod verdict;
 mod wheel_order;
 
+pub use attitude_scale::{AttitudeScale, attitude_scale};
 pub use belief::{Base, Belief};
 pub use candidates::Candidate;
+pub use chamber_order::{SwappedChambers, swapped_chambers};
 pub use details::Details;
 pub use diagnose::Progress;
 pub use evidence::{Echo, Evidence, Left};
@@ -55,12 +60,14 @@ pub use judgement::Findings;
 pub(crate) use knob::SHIFT_MAX;
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub use load_scale::{LoadScale, load_scale};
+pub(crate) use next_drive::scripted_drive;
 pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use noise::with_noise_of;
 pub use scales::{Chances, Grounds, Scales};
 pub use search::search;
 pub use signals::{DT_S, Samples, Signals};
 pub(crate) use signals::{needed, sampled};
+pub use speed_scale::{SpeedScale, speed_scale};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
     Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,

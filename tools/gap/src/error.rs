@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{LoadScale, OddHeading, Swap};
+use crate::diagnosis::{AttitudeScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -176,7 +176,7 @@ pub enum GapError {
     },
     /// Logs of several folders, and what was found beside the first speaks of the first's folder alone.
     #[error(
-        "{about} lies beside the first log and {log} elsewhere, so it would be given another day's ground; say --about FILE with a [[run]] for each, or give runs of one folder"
+        "{about} lies beside the first log and {log} elsewhere, so it would be given another day's ground; say --about FILE with a [[run]] for each (file = \"FOLDER/NAME\" where two have one name), or give runs of one folder"
     )]
     OtherFolder {
         /// The file found.
@@ -247,6 +247,14 @@ pub enum GapError {
         /// SI unit.
         unit: &'static str,
     },
+    /// The pressures of a cylinder's chambers are in each other's places.
+    #[error(
+        "the chambers of a cylinder look swapped: {swapped}, for so they make the load that the frames tell; mend DBC or mapping"
+    )]
+    ChamberOrder {
+        /// Where.
+        swapped: SwappedChambers,
+    },
     /// The chambers' pressures and the cylinders' loads are not on one scale.
     #[error(
         "the chambers' pressures do not make the cylinders' loads: {scale} times what the frames tell; check unit and factor of both in DBC and mapping"
@@ -254,6 +262,22 @@ pub enum GapError {
     LoadScale {
         /// Where, and by how much.
         scale: LoadScale,
+    },
+    /// Wheel speeds are not on the scale of the receiver's ways and the throttle.
+    #[error(
+        "the wheels roll {scale}, which no machine does; check unit and factor of the wheel speeds in DBC and mapping"
+    )]
+    SpeedScale {
+        /// By how much.
+        scale: SpeedScale,
+    },
+    /// Roll or pitch is not on the scale of the strokes.
+    #[error(
+        "the machine's attitude is not what its strokes make it: {scale} what they say; check unit and factor of it in DBC and mapping"
+    )]
+    AttitudeScale {
+        /// Which, and by how much.
+        scale: AttitudeScale,
     },
     /// The heading is not the way in which the fixes go.
     #[error(
@@ -282,6 +306,21 @@ pub enum GapError {
         /// The log that is the same.
         again: String,
     },
+    /// Two files hold parts of one log that overlap.
+    #[error(
+        "{again}: its {:.1} to {:.1} s are {:.1} to {:.1} s of {first}, reading by reading; cut them from one of the two, or leave one out, for what is fitted on cannot be held out as well",
+        again_s[0], again_s[1], first_s[0], first_s[1]
+    )]
+    SharedTime {
+        /// The log given first.
+        first: String,
+        /// From when to when in it, s.
+        first_s: [f64; 2],
+        /// The log that holds the same time.
+        again: String,
+        /// From when to when in it, s.
+        again_s: [f64; 2],
+    },
     /// No run goes by a name.
     #[error("no run `{name}`; there are {known}: give a file name, a number or a scenario")]
     NoSuchRun {
@@ -291,7 +330,9 @@ pub enum GapError {
         known: String,
     },
     /// Several runs go by a name that should mean one.
-    #[error("`{name}` may mean {runs}; give the file name, and no two files of one name")]
+    #[error(
+        "`{name}` may mean {runs}; give the file name, with its folder where two have one name"
+    )]
     AmbiguousRun {
         /// The name.
         name: String,

@@ -6,6 +6,7 @@ mod gzip;
 mod intake;
 mod order;
 mod stillness;
+mod thinned;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -31,6 +32,8 @@ pub struct FieldLog {
     faults: Vec<LogFault>,
     frames: u64,
     duration_s: f64,
+    /// Whether frames of every message, whoever sent it, are missing alike.
+    is_thinned: bool,
 }
 
 impl FieldLog {
@@ -154,7 +157,8 @@ impl FieldLog {
         series: BTreeMap<Channel, Series>,
         duration_s: f64,
     ) -> Self {
-        Self { name: name.into(), series, faults: Vec::new(), frames: 0, duration_s }
+        let faults = Vec::new();
+        Self { name: name.into(), series, faults, frames: 0, duration_s, is_thinned: false }
     }
 
     /// The same log with other samples, as it would be had its sensors read something else.
@@ -190,7 +194,13 @@ impl FieldLog {
     /// The same for people, a line each: what befell many messages alike is one line.
     #[must_use]
     pub fn told_faults(&self) -> Vec<String> {
-        told(&self.faults)
+        told(&self.faults, self.is_thinned)
+    }
+
+    /// Whether who wrote it lost frames of every message alike, so that none that is missing was lost on the bus.
+    #[must_use]
+    pub const fn is_thinned(&self) -> bool {
+        self.is_thinned
     }
 
     /// Frames read, of any message.

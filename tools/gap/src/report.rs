@@ -46,7 +46,7 @@ impl Report {
         for row in &rows {
             table += &line(row, &widths);
         }
-        for fault in told(&self.faults) {
+        for fault in told(&self.faults, false) {
             table += &format!("{fault}\n");
         }
         for note in &self.notes {

@@ -2,6 +2,9 @@
 
 mod attended;
 mod choice;
+mod claims;
+mod names;
+mod shared_time;
 mod soundness;
 
 use std::path::{Path, PathBuf};
@@ -10,11 +13,16 @@ use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
-use crate::diagnosis::{FieldRun, Inquiry, Signals, load_scale, odd_heading, swapped_wheels};
+use crate::diagnosis::{
+    FieldRun, Inquiry, Signals, attitude_scale, load_scale, odd_heading, speed_scale,
+    swapped_chambers, swapped_wheels,
+};
 use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
+use names::{ensure_told_apart, names};
+use shared_time::{SharedTime, shared_time};
 
 /// Logs of one machine, in the order given, no two the same.
 #[derive(Clone, Debug)]
@@ -26,7 +34,7 @@ pub struct RunSet {
 /// One log with what is known of it.
 #[derive(Clone, Debug)]
 pub struct KnownRun {
-    /// File name, without its folder.
+    /// File name, with its folder where another run has the same.
     pub file: String,
     /// What was driven, where `about.toml` says.
     pub scenario: Option<String>,
@@ -53,7 +61,7 @@ impl RunSet {
     ///
     /// # Errors
     /// [`GapError`]: what cannot be read, what cannot be diagnosed (too short, without a signal, on a
-    /// clock that steps, with values that cannot be), and two files that hold one log.
+    /// clock that steps, with values that cannot be), and two files that hold one log or parts of it that overlap.
     pub fn load(
         paths: &[PathBuf],
         decoder: &Decoder,
@@ -62,7 +70,10 @@ impl RunSet {
     ) -> Result<Self, GapError> {
         let about = known.about.map(About::load).transpose()?;
         let one_ground = known.terrain.map(Terrain::load).transpose()?;
-        let read = |path: &PathBuf| {
+        if let (Some(about), Some(file)) = (&about, known.about) {
+            ensure_told_apart(about, file, paths)?;
+        }
+        let read = |(path, file): (&PathBuf, String)| {
             let told = match (&about, known.about) {
                 (Some(about), Some(file)) => {
                     let told = about.run_of(path);
@@ -81,20 +92,26 @@ impl RunSet {
             };
             let log = FieldLog::load(path, decoder, accept_cut)?;
             soundness::one_clock(&log)?;
+            let claims = match (&about, known.about, told) {
+                (Some(about), Some(file), Some(run)) => claims::denied(about, file, run, &log),
+                _ => Vec::new(),
+            };
             let (log, note) = attended(log);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
-                file: file_name(path),
+                file,
                 scenario: told.and_then(|run| run.scenario.clone()),
                 advised: told.map(|run| run.fit),
                 terrain: ground,
                 log,
             };
-            Ok((run, note))
+            Ok((run, claims.into_iter().chain(note).collect()))
         };
-        let read: Vec<_> = paths.par_iter().map(read).collect::<Result<_, GapError>>()?;
-        let (runs, left_out): (Vec<KnownRun>, Vec<Option<String>>) = read.into_iter().unzip();
-        let mut notes: Vec<String> = left_out.into_iter().flatten().collect();
+        let called = names(paths);
+        let read: Vec<_> =
+            paths.par_iter().zip(called).map(read).collect::<Result<_, GapError>>()?;
+        let (runs, told): (Vec<KnownRun>, Vec<Vec<String>>) = read.into_iter().unzip();
+        let mut notes = told.concat();
         if one_ground.is_none() && about.is_none() {
             notes.push(
                 "No word on the ground: every run is taken as driven on level ground.".to_owned(),
@@ -106,14 +123,14 @@ impl RunSet {
     /// The set of `runs`, with what there is to say of them.
     ///
     /// # Errors
-    /// [`GapError::SameLog`] where two hold one log.
+    /// [`GapError::SameLog`] where two hold one log, [`GapError::SharedTime`] where they hold a part of one.
     pub fn new(runs: Vec<KnownRun>, notes: Vec<String>) -> Result<Self, GapError> {
-        for (i, run) in runs.iter().enumerate() {
-            if let Some(before) = runs[..i].iter().find(|before| same(&before.log, &run.log)) {
-                let (first, again) = (before.log.name().to_owned(), run.log.name().to_owned());
-                return Err(GapError::SameLog { first, again });
-            }
-        }
+        let before = |i: usize| runs[..i].iter().map(move |before| (before, i));
+        let pairs: Vec<_> = (0..runs.len()).flat_map(before).collect();
+        let apart = |(before, i): &(&KnownRun, usize)| each_its_own(&before.log, &runs[*i].log);
+        // In order, so that of several errors it is always the same that is told.
+        let answers: Vec<_> = pairs.par_iter().map(apart).collect();
+        answers.into_iter().collect::<Result<(), GapError>>()?;
         Ok(Self { runs, notes })
     }
 
@@ -160,21 +177,30 @@ impl RunSet {
     /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
     ///
     /// # Errors
-    /// [`GapError::LoadScale`] and [`GapError::HeadingSense`].
+    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::SpeedScale`],
+    /// [`GapError::HeadingSense`] and [`GapError::AttitudeScale`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+        if let Some(swapped) = swapped_chambers(runs) {
+            return Err(GapError::ChamberOrder { swapped });
+        }
         if let Some(scale) = load_scale(runs) {
             return Err(GapError::LoadScale { scale });
         }
-        odd_heading(runs).map_or(Ok(()), |odd| Err(GapError::HeadingSense { odd }))
+        if let Some(scale) = speed_scale(runs) {
+            return Err(GapError::SpeedScale { scale });
+        }
+        if let Some(odd) = odd_heading(runs) {
+            return Err(GapError::HeadingSense { odd });
+        }
+        attitude_scale(runs).map_or(Ok(()), |scale| Err(GapError::AttitudeScale { scale }))
     }
 
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may
     /// look swapped.
     ///
     /// # Errors
-    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::LoadScale`] the wheels whose pressures
-    /// and loads do not belong together, [`GapError::HeadingSense`] how the heading counts,
-    /// [`GapError::WheelOrder`] the wheels that look swapped.
+    /// [`GapError::Unmeasured`] names what a log has not, [`GapError::WheelOrder`] the wheels that look
+    /// swapped; and as [`RunSet::ensure_agreeing`].
     pub fn into_field_runs(
         self,
         choice: &Choice,
@@ -184,7 +210,7 @@ impl RunSet {
         let runs: Vec<FieldRun> = used
             .map(|(run, used)| {
                 let field_run = FieldRun::new(run.log, run.terrain, *used == Use::Fit)?;
-                Ok(field_run.driven(run.scenario))
+                Ok(field_run.driven(run.scenario).called(run.file))
             })
             .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
@@ -194,6 +220,17 @@ impl RunSet {
             _ => Ok(runs),
         }
     }
+}
+
+/// Refuses two logs that are one, or parts of one that overlap.
+fn each_its_own(first: &FieldLog, again: &FieldLog) -> Result<(), GapError> {
+    let [of_first, of_again] = [first, again].map(|log| log.name().to_owned());
+    if same(first, again) {
+        return Err(GapError::SameLog { first: of_first, again: of_again });
+    }
+    shared_time(first, again).map_or(Ok(()), |SharedTime { first_s, again_s }| {
+        Err(GapError::SharedTime { first: of_first, first_s, again: of_again, again_s })
+    })
 }
 
 /// One log under two names: the same samples at the same instants.

@@ -97,6 +97,20 @@ fn a_number_that_may_mean_two_runs_is_refused() {
     assert_eq!(letters(&set.choose(&names(&["3"]), &[]).unwrap()), "hF");
 }
 
+/// Each day's first run has the same file name.
+#[test]
+fn a_file_name_of_two_folders_goes_with_its_folder() {
+    let runs = ["one/run-1.log", "two/run-1.log"];
+    let runs = runs.into_iter().zip(1..).map(|(name, seed)| run(name, None, None, seed));
+    let set = RunSet::new(runs.collect(), Vec::new()).unwrap();
+    let fitted = |name: &str| set.choose(&names(&[name]), &[]).map(|choice| letters(&choice));
+    assert_eq!(fitted("two/run-1").unwrap(), "hF");
+    for name in ["run-1", "run-1.log"] {
+        let error = fitted(name).unwrap_err().to_string();
+        assert!(error.contains("may mean one/run-1.log and two/run-1.log"), "{error}");
+    }
+}
+
 #[test]
 fn one_log_under_two_names_is_refused() {
     let runs = vec![run("a.log", None, None, 1), run("copy.log", None, None, 1)];

@@ -32,7 +32,6 @@ pub use refit::Refit;
 use self::squares::Squares;
 use self::twin::{Course, Stretch};
 use super::inquiry::Inquiry;
-use super::inquiry::file_name;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
 
@@ -82,11 +81,11 @@ impl HowFar {
         Ok(how_far)
     }
 
-    /// File names of the runs that were not fitted, which a shrink is judged on; none where all were.
+    /// Names of the runs that were not fitted, which a shrink is judged on; none where all were.
     #[must_use]
     pub fn held_out_runs(&self) -> Vec<String> {
         let each = self.courses.iter().zip(&self.fit).filter(|(_, fit)| !**fit);
-        each.map(|(course, _)| file_name(&course.signals.name)).collect()
+        each.map(|(course, _)| course.signals.name.clone()).collect()
     }
 
     /// How far `effects` shrink the gap of what is believed.

@@ -46,7 +46,8 @@ impl FieldRun {
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: FieldLog, terrain: Terrain, fit: bool) -> Result<Self, GapError> {
         let signals = Signals::new(&log, terrain)?;
-        Ok(Self { log, signals, fit, scenario: None })
+        let name = file_name(log.name());
+        Ok(Self { log, signals, fit, scenario: None }.called(name))
     }
 
     /// The same run of the drive `scenario`.
@@ -55,10 +56,17 @@ impl FieldRun {
         Self { scenario, ..self }
     }
 
-    /// Name of its log's file, without folders.
+    /// The same run under `name`, where its file's is another's as well.
+    #[must_use]
+    pub fn called(mut self, name: String) -> Self {
+        self.signals.name = name;
+        self
+    }
+
+    /// What it is called: its log's file, without folders where it needs none.
     #[must_use]
     pub fn file(&self) -> String {
-        file_name(self.log.name())
+        self.signals.name.clone()
     }
 }
 

@@ -5,7 +5,7 @@ use core::fmt;
 
 use xt28_machine::{Machine, Wheel};
 
-use super::signals::Signals;
+use super::signals::{Samples, Signals};
 
 /// Loads below this, as a root mean square, tell no scale, N: a sensor with a bias of 1 MPa makes 8 kN.
 const LOADED_N: f64 = 1.0e4;
@@ -50,9 +50,14 @@ fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
 
 /// What the pressures of `wheel` make, N, sample by sample; nothing where they are not logged.
 pub(super) fn pressed_n(s: &Signals, wheel: Wheel) -> impl Iterator<Item = f64> {
-    let arms = Machine::xt28().arms;
     let [bore, rod] = &s.chamber_pa[wheel];
-    let both = bore.iter().zip(rod);
+    made_n(bore, rod)
+}
+
+/// What these pressures of a cylinder's two chambers make, N, sample by sample.
+pub(super) fn made_n(bore_pa: &Samples, rod_pa: &Samples) -> impl Iterator<Item = f64> {
+    let arms = Machine::xt28().arms;
+    let both = bore_pa.iter().zip(rod_pa);
     both.map(move |(bore, rod)| bore * arms.area_bore_m2 - rod * arms.area_rod_m2)
 }
 

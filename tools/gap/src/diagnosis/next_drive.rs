@@ -97,6 +97,11 @@ pub fn untested_drive(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Option<(Next,
     Some((Next { manoeuvre, separates: Vec::new(), nats, tests, others }, best))
 }
 
+/// The commands of the scripted drive that a log of this name, or a scenario, is of; `None` where it is of none.
+pub(crate) fn scripted_drive(name: &str) -> Option<FieldLog> {
+    Manoeuvre::all().into_iter().find(|m| is_of(name, m.name)).map(|m| m.commands())
+}
+
 /// Whether the log at `path`, or a scenario of that name, is of the drive `name`, by its own name:
 /// `run-3-s_turn.log.gz`, `s_turn`.
 fn is_of(path: &str, name: &str) -> bool {

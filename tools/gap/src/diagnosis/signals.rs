@@ -1,5 +1,6 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
+mod filled;
 mod made;
 mod receiver;
 mod uncut;
@@ -11,7 +12,9 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::floors::Floors;
+use super::generator::command_period_s;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
+use filled::filled;
 use made::Made;
 use uncut::{CUT_M, uncut};
 
@@ -27,7 +30,7 @@ pub type Samples = Vec<f64>;
 /// One run, ready for diagnosis. Where a channel is missing its samples are empty.
 #[derive(Clone, Debug)]
 pub struct Signals {
-    /// Name of the log.
+    /// Name of the log, or what its run is called.
     pub name: String,
     /// The ground it was driven on, as far as one knows.
     pub terrain: Terrain,
@@ -100,12 +103,18 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// The channels of `log`, sampled from its start to its end.
+    /// The channels of `log`, sampled from its start to its end. What who wrote it lost of the commands came.
     ///
     /// # Errors
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: &FieldLog, terrain: Terrain) -> Result<Self, GapError> {
-        Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)
+        let signals = Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)?;
+        if !log.is_thinned() {
+            return Ok(signals);
+        }
+        let period_s = command_period_s(&signals);
+        let command_times_s = signals.command_times_s.each_ref().map(|row| filled(row, period_s));
+        Ok(Self { command_times_s, ..signals })
     }
 
     /// `series` sampled for `duration_s` s, under the name of `name`.

@@ -85,9 +85,20 @@ impl Attendance {
         self.last = Some(Heard { at, frame: *frame, before, is_news });
     }
 
+    /// What is missing of it.
+    fn missing(&self, tap: &Tap) -> Gaps {
+        if tap.period().is_some() { self.gaps } else { self.row.gaps() }
+    }
+
+    /// How many frames are missing, and of how many.
+    pub(super) fn lost(&self, tap: &Tap) -> [u64; 2] {
+        let lost = self.missing(tap).lost;
+        [lost, self.frames + lost]
+    }
+
     pub(super) fn faults(&self, tap: &Tap) -> impl Iterator<Item = (u64, FaultKind)> {
         let message = || tap.name().to_owned();
-        let missing = if tap.period().is_some() { self.gaps } else { self.row.gaps() };
+        let missing = self.missing(tap);
         let dropped = (missing.gaps > 0).then(|| {
             let Gaps { gaps, lost: frames, longest_s, line } = missing;
             let (message, due) = (message(), self.frames + frames);

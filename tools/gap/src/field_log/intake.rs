@@ -13,6 +13,7 @@ use super::FieldLog;
 use super::attendance::Attendance;
 use super::order::{Order, Place};
 use super::stillness::Stillness;
+use super::thinned::is_thinned;
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
 
 /// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
@@ -134,7 +135,13 @@ impl Intake {
         let fault = |(line, kind)| LogFault { log: name.clone(), line, kind };
         let faults: Vec<LogFault> = kinds.into_iter().map(fault).collect();
         self.check(&name, decoder, &faults)?;
+        let messages: Vec<[u64; 2]> = self
+            .messages
+            .iter()
+            .filter_map(|(id, attendance)| Some(attendance.lost(decoder.tap(*id)?)))
+            .collect();
         Ok(FieldLog {
+            is_thinned: is_thinned(&messages),
             faults,
             series: self.series,
             frames: self.frames,

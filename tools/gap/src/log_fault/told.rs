@@ -3,8 +3,8 @@
 use super::{FaultKind, LogFault};
 
 /// Faults of one log, a line each; lost frames of several messages share one line, and so do repeated
-/// ones. It stands where the first of them stood.
-pub(crate) fn told(faults: &[LogFault]) -> Vec<String> {
+/// ones. It stands where the first of them stood. With `is_thinned`, it was who wrote the log that lost them.
+pub(crate) fn told(faults: &[LogFault], is_thinned: bool) -> Vec<String> {
     let [mut lost, mut repeated] =
         [Tally::of(faults, Mishap::Lost), Tally::of(faults, Mishap::Repeated)];
     let mut lines = Vec::new();
@@ -17,7 +17,7 @@ pub(crate) fn told(faults: &[LogFault]) -> Vec<String> {
                 continue;
             }
         };
-        lines.extend(tally.take().map(|tally| tally.line(fault)));
+        lines.extend(tally.take().map(|tally| tally.line(fault, is_thinned)));
     }
     lines
 }
@@ -92,7 +92,12 @@ impl<'a> Tally<'a> {
 
     /// Whom to suspect of the loss: no device drops its frames as all others do theirs.
     #[allow(clippy::cast_precision_loss)]
-    fn suspect(&self) -> &'static str {
+    fn suspect(&self, is_thinned: bool) -> &'static str {
+        if is_thinned {
+            return "; all messages lack as many alike, whoever sent them, so it was the logger that lost them, and \
+                    commands that are missing count as sent. What is held looks late: record again without loss \
+                    before an unknown cause is believed";
+        }
         let mean = self.frames as f64 / self.of as f64;
         let alike = self.most_share <= ALIKE * mean;
         if self.messages >= MANY && 100.0 * mean >= MUCH_PERCENT && alike {
@@ -105,7 +110,7 @@ impl<'a> Tally<'a> {
 
     /// What is told in place of `first` and all that are like it.
     #[allow(clippy::cast_precision_loss)]
-    fn line(&self, first: &LogFault) -> String {
+    fn line(&self, first: &LogFault, is_thinned: bool) -> String {
         if self.messages == 1 {
             return first.to_string();
         }
@@ -120,7 +125,7 @@ impl<'a> Tally<'a> {
             Mishap::Lost => format!(
                 "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held{}",
                 longest_s * 1e3,
-                self.suspect()
+                self.suspect(is_thinned)
             ),
             Mishap::Repeated => format!(
                 "{place}: {some} are there twice, {most}; the repeats are left out, so check how the log was merged"
@@ -152,7 +157,7 @@ mod tests {
             fault(6, dropped("C", 4)),
             fault(7, FaultKind::Cut),
         ];
-        let lines = told(&faults);
+        let lines = told(&faults, false);
         assert_eq!(lines.len(), 4, "{lines:?}");
         assert_eq!((&lines[0], &lines[3]), (&faults[0].to_string(), &faults[5].to_string()));
         let wanted = "a.log:3: from here on 18 of 300 frames (6.0 %) of 3 messages are missing, \
@@ -167,9 +172,11 @@ mod tests {
             let names = ["A", "B", "C", "D", "E", "F"].into_iter().zip(frames);
             let faults: Vec<LogFault> =
                 names.map(|(name, frames)| fault(3, dropped(name, frames))).collect();
-            told(&faults).join("\n")
+            told(&faults, false).join("\n")
         };
         assert!(of([5, 4, 6, 5, 5, 7]).contains("suspect the logger or the bus"));
         assert!(!of([1, 1, 2, 1, 1, 60]).contains("suspect"), "one device's own");
+        let faults = [fault(3, dropped("A", 5)), fault(4, dropped("B", 5))];
+        assert!(told(&faults, true)[0].contains("it was the logger"), "somebody counted them all");
     }
 }

@@ -1,5 +1,6 @@
 //! Which runs causes are fitted on, and which are held out to judge them.
 
+use super::names::bare;
 use super::{KnownRun, RunSet};
 use crate::GapError;
 
@@ -28,7 +29,7 @@ pub enum Use {
 impl RunSet {
     /// The runs named in `fit` are fitted on, those in `held` are held out. With one of the two
     /// empty, the rest is for the other; with both empty it is as `about.toml` advises, else the last
-    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings), by its place among
+    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings, with its folder where another has the same), by its place among
     /// the logs from 1, or by its scenario, which may be several runs.
     ///
     /// # Errors
@@ -102,13 +103,16 @@ impl RunSet {
         };
         let mut found = all(&|_, run| run.file == name || stem(&run.file) == name);
         if found.is_empty() {
+            found = all(&|_, run| [bare(&run.file), stem(bare(&run.file))].contains(&name));
+        }
+        if found.is_empty() {
             found = all(&|_, run| run.scenario.as_deref() == Some(name));
         } else if found.len() > 1 {
             return Err(self.ambiguous(name, &found));
         }
         if let (true, Ok(number)) = (found.is_empty(), name.parse::<usize>()) {
             // `run-3-mixed.log` given second: 2 may mean its place, 3 its own number.
-            found = all(&|i, run| i + 1 == number || own_number(&run.file) == Some(number));
+            found = all(&|i, run| i + 1 == number || own_number(bare(&run.file)) == Some(number));
             if found.len() > 1 {
                 return Err(self.ambiguous(name, &found));
             }

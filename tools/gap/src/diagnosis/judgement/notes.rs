@@ -1,6 +1,7 @@
 //! What a reader of the verdict should know beside it, a sentence each.
 
 use super::super::candidates::Candidate;
+use super::super::evidence::Left;
 use super::super::floor::Signal;
 use super::super::floors::Floors;
 use super::super::generator::{PERIOD_S, command_period_s};
@@ -13,6 +14,8 @@ use super::{Findings, held_out_runs, not_shown};
 
 /// A gap beyond this is no other machine's, but may be another wheel's.
 const WHEELS_APART: f64 = 5.0;
+/// Share of what there is to explain below which no cause has a name that is worth a look.
+const FAIR_SHARE: f64 = 0.2;
 
 /// The notes on `findings` that came to this verdict.
 pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
@@ -83,13 +86,29 @@ impl Findings {
         })
     }
 
+    /// How much of the squares of all gaps beyond their floors the best cause or pair takes away, beside tolerances
+    /// that are the same with it and without: where next to nothing, something fits best all the same.
+    fn explained_share(&self) -> f64 {
+        let beyond = |all: &[Left]| -> f64 {
+            all.iter().map(|left| (left.square - 1.0).max(0.0) * left.samples).sum()
+        };
+        let there = beyond(&self.apart).max(f64::MIN_POSITIVE);
+        1.0 - beyond(&self.after) / there
+    }
+
     fn why_unknown(&self) -> String {
         let believed = self.believed().map(|Candidate { fit: Fit { hypothesis, .. }, .. }| {
             format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
         });
         let believed: Vec<String> = believed.collect();
-        let best = if believed.is_empty() {
+        let share = self.explained_share();
+        let best = if believed.is_empty() || share <= 0.0 {
             "nothing in the catalogue explains anything, but something is the matter".to_owned()
+        } else if share < FAIR_SHARE {
+            let percent = (100.0 * share).max(1.0);
+            format!(
+                "nothing in the catalogue explains more than {percent:.0} % of what is the matter"
+            )
         } else {
             let best = believed.join(" beside ");
             format!("{best} fits best of all in the catalogue, but is not believed")
@@ -101,9 +120,32 @@ impl Findings {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::evidence::Left;
+    use xt28_sim::effects::Scope;
+
     use super::super::super::generator::Generator;
     use super::*;
+
+    #[test]
+    fn what_fits_best_is_named_only_where_it_explains_a_fair_share() {
+        let of = |square: f64| {
+            let left = |square| vec![Left::evenly(Generator::Stance, Signal::Roll, square, 100.0)];
+            let single = vec![Candidate::made_up("soft-tyres", Scope::All, 90.0)];
+            let [unbent, apart, after] = [400.0, 400.0, square].map(left);
+            Findings { single, unbent, apart, after, ..Findings::default() }.why_unknown()
+        };
+        assert!(of(200.0).starts_with("soft-tyres (all) fits best"), "{}", of(200.0));
+        let little = of(380.0);
+        assert!(little.starts_with("nothing in the catalogue explains more than 5 %"), "{little}");
+        assert!(
+            !little.contains("soft-tyres") && little.contains("of the roll of stance"),
+            "{little}"
+        );
+        assert!(
+            of(400.0).starts_with("nothing in the catalogue explains anything"),
+            "{}",
+            of(400.0)
+        );
+    }
 
     #[test]
     fn a_machine_that_stands_askew_may_have_its_wheels_in_another_order() {

@@ -122,13 +122,13 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         grounds,
         held_out_runs: held_out_runs(inquiry),
         not_testable: not_shown(inquiry, |run| run.fit),
-        notes: notes(inquiry, findings, verdict),
         log_faults: log_faults(inquiry),
         ..Diagnosis::of(verdict, causes)
     };
     // What is stood by has been tested.
-    let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect).collect();
-    diagnosis.not_testable.retain(|one| !stood.contains(&one.effect));
+    let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
+    diagnosis.not_testable.retain(|one| !stood.contains(&one.effect.name));
+    diagnosis.notes = notes(inquiry, findings, verdict, &stood);
     diagnosis
 }
 

@@ -1,5 +1,6 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
+mod command_period;
 mod filled;
 mod made;
 mod receiver;
@@ -12,8 +13,8 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::Terrain;
 
 use super::floors::Floors;
-use super::generator::command_period_s;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
+pub(in crate::diagnosis) use command_period::{PERIOD_S, command_period_s};
 use filled::filled;
 use made::Made;
 use uncut::{CUT_M, uncut};

@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use xt28_sim::Effects;
 
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals, command_period_s};
 
 /// What is expected of the row of commands less what was seen, mean of arms' and drive's; smaller by as
 /// much as chance, and what another law would make, is larger than the floor; `NaN` where nobody sent any.
@@ -30,11 +30,6 @@ pub(super) struct BusErrors {
 
 /// Time over which frames are counted, s.
 const WINDOW_S: f64 = 1.0;
-/// Period of the two commands, s (the wire contract).
-pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
-/// Commands that mostly come this many periods apart or more are of a gateway that has another: a bus that
-/// loses a third of them leaves most where they were.
-const ANOTHER: f64 = 1.5;
 /// Within this time of a window's beginning and end commands are taken to fill it, s.
 const BEGINS_S: f64 = 0.03;
 /// Share of what lateness and loss are expected to make of the places and the intervals by which another law of
@@ -73,21 +68,6 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
         fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven, ANOTHER_LAW));
     }
     errors
-}
-
-/// The period of the commands of a run, s: that of the wire contract, or what most of them are apart where
-/// that is more by half.
-#[must_use]
-pub(in crate::diagnosis) fn command_period_s(signals: &Signals) -> f64 {
-    let each = signals.command_times_s.iter().flat_map(|times| times.windows(2));
-    let mut apart_s: Vec<f64> = each.map(|pair| pair[1] - pair[0]).collect();
-    if apart_s.is_empty() {
-        return PERIOD_S;
-    }
-    let middle = apart_s.len() / 2;
-    let (_, median_s, _) = apart_s.select_nth_unstable_by(middle, f64::total_cmp);
-    let whole_s = (*median_s * 1e3).round() * 1e-3;
-    if whole_s > ANOTHER * PERIOD_S { whole_s } else { PERIOD_S }
 }
 
 /// Whether somebody sent commands from the beginning of a window to its end: before the first command and
@@ -181,6 +161,7 @@ fn expected_times_s(effects: &Effects, period_s: f64) -> Vec<f64> {
 mod tests {
     use super::super::still::still;
     use super::*;
+    use crate::diagnosis::signals::PERIOD_S;
 
     fn row(loss: f64, late_s: f64) -> Row {
         let mut effects = Effects::default();

@@ -1,0 +1,24 @@
+//! How far apart commands are sent.
+
+use super::Signals;
+
+/// Period of the two commands, s (the wire contract).
+pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
+/// Commands that mostly come this many periods apart or more are of a gateway that has another: a bus that
+/// loses a third of them leaves most where they were.
+const ANOTHER: f64 = 1.5;
+
+/// The period of the commands of a run, s: that of the wire contract, or what most of them are apart where
+/// that is more by half.
+#[must_use]
+pub(in crate::diagnosis) fn command_period_s(signals: &Signals) -> f64 {
+    let each = signals.command_times_s.iter().flat_map(|times| times.windows(2));
+    let mut apart_s: Vec<f64> = each.map(|pair| pair[1] - pair[0]).collect();
+    if apart_s.is_empty() {
+        return PERIOD_S;
+    }
+    let middle = apart_s.len() / 2;
+    let (_, median_s, _) = apart_s.select_nth_unstable_by(middle, f64::total_cmp);
+    let whole_s = (*median_s * 1e3).round() * 1e-3;
+    if whole_s > ANOTHER * PERIOD_S { whole_s } else { PERIOD_S }
+}

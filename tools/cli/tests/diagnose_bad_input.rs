@@ -271,7 +271,15 @@ fn what_lies_beside_one_days_logs_speaks_of_no_other_days() {
     let talk = refusal(&[&first, &other]);
     assert!(talk.contains("about.toml lies beside the first log"), "{talk}");
     assert!(talk.contains("tuesday") && talk.contains("--about"), "{talk}");
-    // Said outright it is for all; that both are one log is then found.
+    // Said outright it is for all, and what one run says of two logs is not taken for either.
+    let talk = refusal(&[&first, &other, "--about", &about]);
+    assert!(talk.contains("about.toml:3: run run-1.log would speak of"), "{talk}");
+    assert!(talk.contains("file = \"tuesday/run-1.log\""), "{talk}");
+    // With a run for each, that both are one log is found.
+    let run =
+        |day| format!("[[run]]\nfile = \"{day}/run-1.log\"\nterrain = \"flat\"\nfit = true\n");
+    fs::write(&about, ["case = \"two days\"\n".to_owned(), run("monday"), run("tuesday")].concat())
+        .unwrap();
     let talk = refusal(&[&first, &other, "--about", &about]);
     assert!(talk.contains("the same log as"), "{talk}");
 }

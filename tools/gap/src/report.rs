@@ -46,6 +46,7 @@ impl Report {
         for row in &rows {
             table += &line(row, &widths);
         }
+        // A replay holds the value before, whoever lost the next.
         for fault in told(&self.faults, false) {
             table += &format!("{fault}\n");
         }

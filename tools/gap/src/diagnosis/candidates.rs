@@ -9,6 +9,7 @@ use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
+use super::overlap::Paid;
 use super::search::search;
 use super::signals::Signals;
 
@@ -162,13 +163,14 @@ impl<'a> Docket<'a> {
         self.fit.unbent()
     }
 
-    /// What is left on each signal of the runs fitted once `fits` are believed.
-    pub(super) fn left(&self, fits: &[&Fit]) -> Vec<Left> {
+    /// What it costs to believe `fits`, tolerances at their best.
+    pub(super) fn paid(&self, fits: &[&Fit]) -> Paid {
         let (effects, from_s) = self.believing(fits);
-        self.fit.left(Belief { effects: &effects, from_s })
+        let (left, shifts) = self.fit.left_and_shifts(Belief { effects: &effects, from_s });
+        Paid { left, shifts }
     }
 
-    /// The same of the runs held out, with tolerances at their best there; nothing without any.
+    /// What each signal of the runs held out leaves, tolerances at their best there; nothing without any.
     pub(super) fn left_held(&self, fits: &[&Fit]) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
         let held = self.held.as_ref();
@@ -198,12 +200,6 @@ impl<'a> Docket<'a> {
     pub(super) fn apart(&self, fits: &[&Fit], most: f64) -> Vec<Left> {
         let (effects, from_s) = self.believing(fits);
         self.fit.apart(Belief { effects: &effects, from_s }, most)
-    }
-
-    /// Where the tolerances go once `fits` are believed, each by how many of its own.
-    pub(super) fn shifts(&self, fits: &[&Fit]) -> Vec<(Knob, f64)> {
-        let (effects, from_s) = self.believing(fits);
-        self.fit.shifts(Belief { effects: &effects, from_s })
     }
 
     fn believing(&self, fits: &[&Fit]) -> (Effects, f64) {

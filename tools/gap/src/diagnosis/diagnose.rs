@@ -4,7 +4,6 @@ use xt28_sim::effects::Effect;
 
 use super::belief::Base;
 use super::candidates::{Candidate, Docket};
-use super::evidence::Left;
 use super::excitation::Shown;
 use super::how_far::HowFar;
 use super::hypothesis::{Fit, Hypothesis};
@@ -77,7 +76,7 @@ impl Inquiry {
         let shown = Shown::of(self.runs.iter().map(|run| &run.signals), &self.machine);
         let single = tested(first.candidates(&self.catalogue), &shown);
         let Some(best) = single.first() else {
-            let (after, shifts) = (first.left(&[]), first.shifts(&[]));
+            let Paid { left: after, shifts } = first.paid(&[]);
             let apart = after.clone();
             let held = first.held(&first, &[]);
             return Findings { unbent, alone, apart, after, held, shifts, ..Findings::default() };
@@ -85,14 +84,14 @@ impl Inquiry {
         tell("trying second causes", 0.4);
         let (pair, beside) = self.second(&docket, &single, &shown);
         tell("looking at what is left", 0.7);
-        let (pair, after) = owned(pair, &first, &beside);
+        let (pair, paid) = owned(pair, &first, &beside);
         let nothing = &self.believed;
         let (believed, court, last) = match pair.first() {
             Some([one, second]) => (vec![&one.fit, &second.fit], &beside, &second.fit),
             None => (vec![&best.fit], &first, &best.fit),
         };
-        let after = if pair.is_empty() { first.left(&[last]) } else { after };
-        let (shifts, echoes) = (court.shifts(&[last]), court.echoes(&[last], nothing));
+        let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
+        let echoes = court.echoes(&[last], nothing);
         let held = first.held(court, &[last]);
         let apart = first.apart(&believed, SHIFT_MAX);
         Findings { unbent, alone, apart, single, pair, after, echoes, held, shifts }
@@ -167,30 +166,27 @@ fn tested(mut candidates: Vec<Candidate>, shown: &Shown) -> Vec<Candidate> {
     candidates
 }
 
-/// Pairs by what their seconds explain of their own, and what each signal leaves under the best. All
-/// have one first, found by `first`; their seconds were found `beside` it.
+/// Pairs by what their seconds explain of their own, and what is paid for the best of them. All have one
+/// first, found by `first`; their seconds were found `beside` it.
 fn owned(
     pairs: Vec<[Candidate; 2]>,
     first: &Docket,
     beside: &Docket,
-) -> (Vec<[Candidate; 2]>, Vec<Left>) {
-    let Some([one, _]) = pairs.first() else { return (pairs, Vec::new()) };
-    let paid = |docket: &Docket, fits: &[&Fit]| Paid {
-        left: docket.left(fits),
-        shifts: docket.shifts(fits),
-    };
-    let (none, explained) = (paid(first, &[]), paid(first, &[&one.fit]));
-    let alone = paid(beside, &[]);
+) -> (Vec<[Candidate; 2]>, Option<Paid>) {
+    let Some([one, _]) = pairs.first() else { return (pairs, None) };
+    let (none, explained) = (first.paid(&[]), first.paid(&[&one.fit]));
+    let alone = beside.paid(&[]);
     let weigh = |[one, mut second]: [Candidate; 2]| {
-        let both = paid(beside, &[&second.fit]);
+        let both = beside.paid(&[&second.fit]);
         second.own_share = own_share([&none, &explained], [&alone, &both]);
-        ([one, second], both.left)
+        ([one, second], both)
     };
     let mut all: Vec<_> = pairs.into_iter().map(weigh).collect();
     all.retain(|([_, second], _)| second.score() > SECOND_MIN);
     all.sort_by(|([_, a], _), ([_, b], _)| b.score().total_cmp(&a.score()));
-    let after = all.first().map_or(Vec::new(), |(_, both)| both.clone());
-    (all.into_iter().map(|(pair, _)| pair).collect(), after)
+    let (pairs, mut paid): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let best = (!paid.is_empty()).then(|| paid.swap_remove(0));
+    (pairs, best)
 }
 
 #[cfg(test)]

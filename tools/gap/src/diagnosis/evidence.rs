@@ -10,6 +10,7 @@
 
 mod bumps;
 mod echo;
+mod left;
 mod stack;
 mod watch;
 
@@ -21,12 +22,12 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 
 use super::belief::{Base, Belief};
-use super::floor::Signal;
 use super::generator::Generator;
 use super::knob::Knob;
 use super::signals::Signals;
-use bumps::Bumps;
 pub use echo::Echo;
+pub use left::Left;
+use left::{cost_of_squares, with_bumps};
 use stack::Group;
 pub(super) use watch::Memory;
 use watch::{Sums, Watch};
@@ -48,42 +49,6 @@ pub struct Evidence<'a> {
     /// Of the knobs' posterior precision.
     factor: Cholesky<f64, Dyn>,
     knobs: Vec<Knob>,
-}
-
-/// What one signal leaves.
-#[derive(Clone, Copy, Debug)]
-pub struct Left {
-    /// Who watches it.
-    pub generator: Generator,
-    /// The signal.
-    pub signal: Signal,
-    /// Mean square in units of the floor; about one where nothing but the floor is left.
-    pub square: f64,
-    /// The same without the samples that leave most, one in twenty-five: one bump is no law. Told by
-    /// [`Evidence::left`] and [`Evidence::unbent`]; elsewhere it is `square`.
-    pub steady: f64,
-    /// The third largest of its bumps at its peak, floors: what comes again and again is a law after
-    /// all. Told as `steady` is, zero elsewhere.
-    pub recurring: f64,
-    /// Independent samples.
-    pub samples: f64,
-}
-
-impl Left {
-    /// A signal that leaves `square` all along, without bumps.
-    pub(super) const fn evenly(
-        generator: Generator,
-        signal: Signal,
-        square: f64,
-        samples: f64,
-    ) -> Self {
-        Self { generator, signal, square, steady: square, recurring: 0.0, samples }
-    }
-
-    /// What the signal costs, nats.
-    pub(super) fn cost(&self) -> f64 {
-        0.5 * cost_of_squares(self.square * self.samples, self.samples)
-    }
 }
 
 impl<'a> Evidence<'a> {
@@ -207,10 +172,18 @@ impl<'a> Evidence<'a> {
     /// What is left on each signal, tolerances at their best.
     #[must_use]
     pub fn left<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<Left> {
+        self.left_and_shifts(belief).0
+    }
+
+    /// The same, with [`Self::shifts`].
+    pub(super) fn left_and_shifts<'e>(
+        &self,
+        belief: impl Into<Belief<'e>>,
+    ) -> (Vec<Left>, Vec<(Knob, f64)>) {
         let (values, sums, step) = self.answers(belief.into());
         let each = self.watches.iter().zip(values);
         let bumps = each.flat_map(|(watch, values)| watch.bumps(&watch.bent(values, &step)));
-        with_bumps(self.left_at(&sums, &step), bumps)
+        (with_bumps(self.left_at(&sums, &step), bumps), self.by_knob(&step))
     }
 
     /// How much of what `belief` leaves on each signal is what it explains of what `nothing` leaves, moved
@@ -287,7 +260,10 @@ impl<'a> Evidence<'a> {
     /// Where all knobs at once come to lie beside `belief`, each by how many of its tolerances.
     #[must_use]
     pub fn shifts<'e>(&self, belief: impl Into<Belief<'e>>) -> Vec<(Knob, f64)> {
-        let step = self.step(&self.sums(belief.into(), &|_| true));
+        self.by_knob(&self.step(&self.sums(belief.into(), &|_| true)))
+    }
+
+    fn by_knob(&self, step: &DVector<f64>) -> Vec<(Knob, f64)> {
         self.knobs.iter().copied().zip(step.iter().copied()).collect()
     }
 
@@ -357,21 +333,6 @@ impl<'a> Evidence<'a> {
         };
         self.watches.iter().zip(sums.iter().map(Cow::as_ref)).map(of).collect()
     }
-}
-
-/// What each signal leaves, with its bumps.
-fn with_bumps(mut all: Vec<Left>, bumps: impl Iterator<Item = Bumps>) -> Vec<Left> {
-    for (left, Bumps { steady, recurring }) in all.iter_mut().zip(bumps) {
-        (left.steady, left.recurring) = (steady, recurring);
-    }
-    all
-}
-
-/// What it costs that a signal of `samples` independent samples leaves `square`, its scale at its best.
-fn cost_of_squares(square: f64, samples: f64) -> f64 {
-    let above = SCALE_SAMPLES + square.max(samples);
-    let believed = SCALE_SAMPLES + samples;
-    square.min(samples) + believed * (above / believed).ln()
 }
 
 /// Precision of the knobs, in units of their tolerances: one's belief and every watch's word.

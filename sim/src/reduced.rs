@@ -13,6 +13,8 @@ mod bias;
 mod contact;
 mod factor;
 mod ground;
+#[cfg(test)]
+mod left_over;
 mod newton;
 mod patch;
 mod pose;

@@ -46,7 +46,7 @@ fn drive(
 }
 
 /// The velocities that the last step of `dt_s` s ended with, before the frame's velocity turned along with it.
-fn ended(after: &State, dt_s: f64) -> Generalized {
+pub(super) fn ended(after: &State, dt_s: f64) -> Generalized {
     let twist = core::array::from_fn(|k| after.rate[k]);
     let half = angular(&twist) * (0.5 * dt_s);
     let turn = DQuat::from_xyzw(half.x, half.y, half.z, 1.0).normalize();

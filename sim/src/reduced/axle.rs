@@ -47,6 +47,8 @@ pub(super) struct Axle {
     now: Made,
     /// At the guess that is tried.
     next: Made,
+    /// Minus the derivative of the impulse where it was taken last, kg m².
+    slope: f64,
     /// What the solver's present step would add to the rate, rad/s.
     step_rad_s: f64,
     /// By how much the impulse tried is not the one foreseen, Nm s.
@@ -73,6 +75,7 @@ impl Axle {
             creep: BRAKE_CREEP_NMS * dt_s,
             now: none,
             next: none,
+            slope: 0.0,
             step_rad_s: 0.0,
             missed: 0.0,
         };
@@ -103,9 +106,10 @@ impl Axle {
         self.now.impulse
     }
 
-    /// Minus its derivative at the present guess, kg m².
-    pub(super) const fn slope(&self) -> f64 {
-        self.now.slope
+    /// Takes the derivative at the present guess; minus that, kg m².
+    pub(super) const fn derive(&mut self) -> f64 {
+        self.slope = self.now.slope;
+        self.slope
     }
 
     /// Takes what the solver would add to the rate.
@@ -117,7 +121,7 @@ impl Axle {
     pub(super) fn try_share(&mut self, share: f64) -> f64 {
         let step_rad_s = share * self.step_rad_s;
         self.next = self.made(self.now.rate_rad_s + step_rad_s);
-        self.missed = self.now.impulse - self.now.slope * step_rad_s - self.next.impulse;
+        self.missed = self.now.impulse - self.slope * step_rad_s - self.next.impulse;
         self.step_rad_s * self.missed
     }
 

@@ -149,7 +149,12 @@ impl Balance<'_> {
 
     /// Factors the derivative of the residual. Of wheels on which nothing changed since the last time the
     /// factors are left as they are.
-    fn factor(&self, contacts: &mut [Contact], coupled: bool, factors: &mut Factors) -> Option<()> {
+    fn factor(
+        &mut self,
+        contacts: &mut [Contact],
+        coupled: bool,
+        factors: &mut Factors,
+    ) -> Option<()> {
         let mut changed = [false; 6];
         for contact in contacts.iter_mut() {
             if contact.derive(coupled)
@@ -160,7 +165,7 @@ impl Balance<'_> {
         }
         let mut hinge = self.hinge;
         for (i, changed) in changed.into_iter().enumerate() {
-            hinge[WHEELS + i] += self.axles[i].slope();
+            hinge[WHEELS + i] += self.axles[i].derive();
             if changed || factors.wheel_stiffening(i) != Some(hinge[WHEELS + i]) {
                 let both = |out: &mut Spatial6| {
                     *out = self.inertias.arm[i];
@@ -237,7 +242,8 @@ impl Balance<'_> {
         out
     }
 
-    fn size_m_s(&self, residual: &Generalized) -> f64 {
+    /// What is out of balance, as a velocity of the whole machine, m/s.
+    pub(super) fn size_m_s(&self, residual: &Generalized) -> f64 {
         let torque: f64 = residual[..3].iter().map(|r| r * r).sum();
         let force: f64 = residual[3..6].iter().map(|r| r * r).sum();
         let hinges: f64 = residual[6..].iter().map(|r| r * r).sum();

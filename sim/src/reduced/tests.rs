@@ -15,7 +15,7 @@ use super::tree::Tree;
 use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
 use crate::{Effects, HullBall, Parts, RollHinge, Terrain, TyrePart};
 
-fn parts() -> Parts {
+pub(super) fn parts() -> Parts {
     Parts::new(&Machine::xt28(), &Effects::default())
 }
 
@@ -39,7 +39,7 @@ fn bent(seed: f64) -> State {
     }
 }
 
-fn inertias(tree: &Tree, pose: &Pose) -> Inertias {
+pub(super) fn inertias(tree: &Tree, pose: &Pose) -> Inertias {
     let mut inertias = Inertias::default();
     inertias.renew(tree, pose);
     inertias
@@ -69,7 +69,7 @@ pub(super) fn momenta(tree: &Tree, state: &State, rate: &Generalized) -> Vec<(Sp
 }
 
 /// The mass matrix by columns: J^T I J summed over the bodies.
-fn mass_matrix(tree: &Tree, state: &State) -> Vec<Generalized> {
+pub(super) fn mass_matrix(tree: &Tree, state: &State) -> Vec<Generalized> {
     let unit = |k: usize| -> Generalized { core::array::from_fn(|i| f64::from(u8::from(i == k))) };
     let bodies: Vec<_> = (0..FREEDOMS).map(|k| momenta(tree, state, &unit(k))).collect();
     let entry = |j: usize, k: usize| {

@@ -273,7 +273,7 @@ pub enum GapError {
     },
     /// Roll or pitch is not on the scale of the strokes.
     #[error(
-        "the machine's attitude is not what its strokes make it: {scale} what they say; check unit and factor of it in DBC and mapping"
+        "the machine's attitude is not what its strokes make it: {scale} what they say; check unit, factor and sign of it in DBC and mapping"
     )]
     AttitudeScale {
         /// Which, and by how much.

@@ -37,6 +37,15 @@ fn a_factor_of_ten_is_told_by_the_channel_that_has_it() {
 }
 
 #[test]
+fn an_attitude_of_the_wrong_sign_is_told_to_be_so() {
+    let runs = both();
+    let roll = scaled(runs.clone(), |s| times(&mut s.roll_rad, -1.0)).unwrap_err();
+    assert!(roll.contains("roll -") && !roll.contains("pitch "), "{roll}");
+    let pitch = scaled(runs.clone(), |s| times(&mut s.pitch_rad, -1.0)).unwrap_err();
+    assert!(pitch.contains("pitch -") && !pitch.contains("roll "), "{pitch}");
+}
+
+#[test]
 fn what_an_effect_can_do_is_left_to_the_diagnosis() {
     let runs = both();
     for factor in [0.6, 1.5] {

@@ -1,5 +1,5 @@
-//! Whether roll and pitch are on the scale of what the strokes say: a wrong factor in a DBC makes a machine that
-//! stands on no ground.
+//! Whether roll and pitch are on the scale of what the strokes say, and of the same sign: a wrong factor in a DBC
+//! makes a machine that stands on no ground.
 
 use core::fmt;
 
@@ -17,8 +17,8 @@ const ANGLES: [(&str, Signal); 2] = [("roll", Signal::RollSway), ("pitch", Signa
 const SWAYS_RAD: f64 = 7.0e-4;
 /// Samples that are too few, ten a second.
 const SAMPLES_MIN: usize = 50;
-/// A reading is of the same motion, on whatever scale, where the two go along like this. Of machines with a
-/// fault none had less than 0.8.
+/// A reading is of the same motion, on whatever scale, where the two go along like this, or against one another.
+/// Of machines with a fault none had less than 0.8.
 const ALONG: f64 = 0.7;
 /// How many times more or less than the strokes a reading may say. Of machines with a fault none had more
 /// than 1.4: soft tyres, arms whose strokes are read wrong.
@@ -27,7 +27,7 @@ const TIMES_MAX: f64 = 4.0;
 /// Angles that are not on the scale of the strokes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeScale {
-    /// Each by its name, with how many times what the strokes say it reads.
+    /// Each by its name, with how many times what the strokes say it reads; less than zero where it reads the other way round.
     pub angles: Vec<(&'static str, f64)>,
 }
 
@@ -81,7 +81,8 @@ fn times<'a>(runs: impl Iterator<Item = &'a Sways>) -> Option<f64> {
         count += 1;
     }
     let moves = count >= SAMPLES_MIN && strokes > SWAYS_RAD * SWAYS_RAD * count as f64;
-    (moves && both > ALONG * (strokes * reading).sqrt()).then(|| (reading / strokes).sqrt())
+    let along = moves && both.abs() > ALONG * (strokes * reading).sqrt();
+    along.then(|| (reading / strokes).sqrt().copysign(both))
 }
 
 impl fmt::Display for AttitudeScale {
@@ -108,7 +109,8 @@ mod tests {
         assert!((found - 10.0).abs() < 0.1, "{found}");
         assert!(of(&swung(0.1, 0.3)).is_some_and(|times| times < 0.11));
         assert_eq!(of(&swung(10.0, 2.0)), None, "it is read of something else");
-        assert_eq!(of(&swung(-10.0, 0.0)), None, "it is read the other way round");
+        let turned = of(&swung(-1.0, 0.1)).unwrap();
+        assert!((turned + 1.0).abs() < 0.01, "{turned}: it is read the other way round");
         let still: Sways =
             swung(10.0, 0.0).into_iter().map(|both| both.map(|x| 0.05 * x)).collect();
         assert_eq!(of(&still), None, "nothing moves");

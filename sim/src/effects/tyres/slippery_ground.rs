@@ -32,7 +32,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             name: "friction_factor",
             neutral: 1.0,
             tolerance: 0.3,
-            range: [0.02, 2.0],
+            range: [0.05, 2.0],
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].slippery_ground.friction_factor
             }),

@@ -18,6 +18,9 @@ const BESIDE: [f64; 3] = [10.0, 20.0, 40.0];
 /// in tolerances: a drift, and the load below which it sets in.
 const AMOUNTS: [f64; 2] = [3.0, 6.0];
 const THRESHOLDS: [f64; 4] = [-4.0, -1.5, 1.5, 4.0];
+/// Parts of itself that a limit is looked at, and tolerances of what goes with it there.
+const LOWERED: [f64; 4] = [0.5, 0.35, 0.2, 0.1];
+const WITH_LOWERED: [f64; 3] = [1.5, 4.0, 10.0];
 /// Instants of every run from which an effect is looked for, s; what sets in between is seen at one.
 const LOOKED_FROM_S: [f64; 4] = [0.0, 6.0, 12.0, 18.0];
 /// What an effect that sets in late must gain beyond one that was always there, nats.
@@ -135,7 +138,7 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
             grid.extend(beside(parameters, k, &values));
             grid.push(values);
         }
-        for values in with_amounts(parameters, k) {
+        for values in with_amounts(parameters, k).into_iter().chain(lowered(parameters, k)) {
             if !grid.contains(&values) {
                 grid.push(values);
             }
@@ -160,6 +163,33 @@ fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
         values
     };
     reaches.map(values).collect()
+}
+
+/// What can fall to less than a tenth of itself within few tolerances, alone and beside what goes both ways: the
+/// friction of slippery ground does nothing until wheels slide, so that no slope leads to it from where its slip is
+/// found, and no slip alone explains wheels that slide.
+fn lowered(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
+    let Parameter { neutral, range: [least, _], tolerance, .. } = parameters[k];
+    if !(least > 0.0 && neutral > 10.0 * least && neutral - least <= 10.0 * tolerance) {
+        return Vec::new();
+    }
+    let alone = LOWERED.map(|part| {
+        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        values[k] *= part;
+        values
+    });
+    let both_ways = |j: &usize| *j != k && !parameters[*j].range.contains(&parameters[*j].neutral);
+    let beside = (0..parameters.len()).filter(both_ways).flat_map(|j| {
+        let (p, alone) = (&parameters[j], &alone);
+        WITH_LOWERED.into_iter().flat_map(move |reach| {
+            alone.iter().map(move |values| {
+                let mut values = values.clone();
+                values[j] = (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
+                values
+            })
+        })
+    });
+    beside.chain(alone.iter().cloned()).collect()
 }
 
 /// What can only be positive may be a fraction of itself, far beyond its tolerances: a tyre's stiffness.
@@ -196,9 +226,14 @@ mod tests {
 
     #[test]
     fn the_grid_stays_in_range_and_names_nothing_twice() {
-        for name in
-            ["arm-delay", "speed-asymmetry", "payload", "pump-flow-limit", "unsupported-sag"]
-        {
+        for name in [
+            "arm-delay",
+            "speed-asymmetry",
+            "payload",
+            "pump-flow-limit",
+            "unsupported-sag",
+            "slippery-ground",
+        ] {
             let p = find(name).unwrap().parameters;
             let grid = grid(p);
             assert!(grid.len() >= 2, "{name}");
@@ -211,6 +246,8 @@ mod tests {
         }
         let sag = grid(find("unsupported-sag").unwrap().parameters);
         assert!(sag.iter().any(|values| values[0] > 0.0 && values[1] > 0.0));
+        let slides = |values: &Vec<f64>| values[0] < 0.4 && values[1] > 0.1;
+        assert!(grid(find("slippery-ground").unwrap().parameters).iter().any(slides));
         assert_eq!(Scope::ALL.len(), Hypothesis::of(&[find("arm-delay").unwrap()]).len());
     }
 }

@@ -32,6 +32,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             name: "friction_factor",
             neutral: 1.0,
             tolerance: 0.3,
+            // Wet ice has some 0.03 to 0.05, where 0.7 is believed.
             range: [0.05, 2.0],
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].slippery_ground.friction_factor

@@ -27,7 +27,8 @@ const TIMES_MAX: f64 = 4.0;
 /// Angles that are not on the scale of the strokes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeScale {
-    /// Each by its name, with how many times what the strokes say it reads; less than zero where it reads the other way round.
+    /// Each by its name, with how many times what the strokes say it reads; less than zero where it reads the
+    /// other way round.
     pub angles: Vec<(&'static str, f64)>,
 }
 

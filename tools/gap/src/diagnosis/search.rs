@@ -118,6 +118,16 @@ fn falling(p: &Parameter) -> impl Iterator<Item = f64> {
     [0.35, 0.5, 0.6, 0.7, 0.8].into_iter().filter(move |_| is_limit).map(values)
 }
 
+/// All parameters as they are without the effect.
+fn without(parameters: &[Parameter]) -> Vec<f64> {
+    parameters.iter().map(|p| p.neutral).collect()
+}
+
+/// So many tolerances from neutral, or as far as the parameter goes.
+fn at(p: &Parameter, reach: f64) -> f64 {
+    (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1])
+}
+
 /// One parameter at a time on both sides of neutral, near and far.
 fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     let mut grid: Vec<Vec<f64>> = Vec::new();
@@ -128,7 +138,7 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
         let reaches = if one_sided { &far[..] } else { &REACHES[..] };
         let near = reaches.iter().map(|reach| p.neutral + reach * p.tolerance);
         for value in near.chain(falling(p)) {
-            let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+            let mut values = without(parameters);
             values[k] = value.clamp(p.range[0], p.range[1]);
             if values[k] != p.neutral && !grid.contains(&values) {
                 grid.push(values);
@@ -154,11 +164,9 @@ fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
     if p.range.contains(&p.neutral) {
         return Vec::new();
     }
-    let at =
-        |p: &Parameter, reach: f64| (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
     let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
     let values = |(much, far)| {
-        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        let mut values = without(parameters);
         (values[j], values[k]) = (at(&parameters[j], much), at(p, far));
         values
     };
@@ -174,7 +182,7 @@ fn lowered(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
         return Vec::new();
     }
     let alone = LOWERED.map(|part| {
-        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        let mut values = without(parameters);
         values[k] *= part;
         values
     });
@@ -184,7 +192,7 @@ fn lowered(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
         WITH_LOWERED.into_iter().flat_map(move |reach| {
             alone.iter().map(move |values| {
                 let mut values = values.clone();
-                values[j] = (p.neutral + reach * p.tolerance).clamp(p.range[0], p.range[1]);
+                values[j] = at(p, reach);
                 values
             })
         })
@@ -196,7 +204,7 @@ fn lowered(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
 fn fractions(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
     let Parameter { neutral, range: [least, _], tolerance, .. } = parameters[k];
     let fraction = |share: f64| {
-        let mut values: Vec<f64> = parameters.iter().map(|p| p.neutral).collect();
+        let mut values = without(parameters);
         values[k] *= (least / neutral).powf(share);
         values
     };
@@ -211,7 +219,7 @@ fn beside(parameters: &[Parameter], k: usize, values: &[f64]) -> Vec<Vec<f64>> {
     let with = |(j, p): (usize, &Parameter)| {
         BESIDE.map(|reach| {
             let mut values = values.to_vec();
-            values[j] = (p.neutral + reach * p.tolerance).min(p.range[1]);
+            values[j] = at(p, reach);
             values
         })
     };

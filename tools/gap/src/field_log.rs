@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use xt28_bus::candump::Reader;
 
-use crate::log_fault::told;
+use crate::log_fault::{each_told, told};
 use crate::recorded::{self, MAGIC};
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
 use gzip::{Failed, Gzip};
@@ -195,6 +195,12 @@ impl FieldLog {
     #[must_use]
     pub fn told_faults(&self) -> Vec<String> {
         told(&self.faults, self.is_thinned)
+    }
+
+    /// The same fault by fault, each with whom to suspect where it befell all messages alike.
+    #[must_use]
+    pub fn each_fault(&self) -> Vec<String> {
+        each_told(&self.faults, self.is_thinned)
     }
 
     /// Whether who wrote it lost frames of every message alike, so that none that is missing was lost on the bus.

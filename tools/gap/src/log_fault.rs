@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use xt28_bus::candump::Skipped;
 
-pub(crate) use told::told;
+pub(crate) use told::{each_told, told};
 
 /// Something a reader of the result must know of its log. Displays as one line with file and line.
 #[derive(Clone, Debug, PartialEq)]

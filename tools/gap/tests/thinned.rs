@@ -41,6 +41,9 @@ fn what_the_logger_lost_of_everybody_was_not_lost_on_the_bus() {
     assert!(missing(&log) < 3.0, "{} floors", missing(&log));
     let told = log.told_faults().join("\n");
     assert!(told.contains("it was the logger that lost them"), "{told}");
+    let lost: Vec<String> =
+        log.each_fault().into_iter().filter(|fault| fault.contains("is missing")).collect();
+    assert!(!lost.is_empty() && lost.iter().all(|line| line.contains("it was the logger")));
 }
 
 #[test]

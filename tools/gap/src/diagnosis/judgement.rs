@@ -151,8 +151,7 @@ fn not_shown(inquiry: &Inquiry, are: impl Fn(&FieldRun) -> bool + Clone) -> Vec<
 
 /// Every fault of every log.
 fn log_faults(inquiry: &Inquiry) -> Vec<String> {
-    let faults = inquiry.runs.iter().flat_map(|run| run.log.faults());
-    faults.map(ToString::to_string).collect()
+    inquiry.runs.iter().flat_map(|run| run.log.each_fault()).collect()
 }
 
 /// File names of the runs that were not fitted.

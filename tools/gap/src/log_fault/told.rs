@@ -22,6 +22,18 @@ pub(crate) fn told(faults: &[LogFault], is_thinned: bool) -> Vec<String> {
     lines
 }
 
+/// Faults of one log, each as it is, with whom to suspect of frames that all messages lose alike: who reads one of
+/// them alone would lay it to a device.
+pub(crate) fn each_told(faults: &[LogFault], is_thinned: bool) -> Vec<String> {
+    let lost = Tally::of(faults, Mishap::Lost);
+    let suspect = lost.and_then(|tally| tally.suspect(is_thinned)).map_or("", Suspect::why);
+    let told = |fault: &LogFault| match Mishap::of(fault) {
+        Some((Mishap::Lost, ..)) => format!("{fault}{suspect}"),
+        _ => fault.to_string(),
+    };
+    faults.iter().map(told).collect()
+}
+
 /// Messages from which on frames that all lose alike are lost where all pass.
 const MANY: usize = 5;
 /// Least share of the frames, %, of which that is said.
@@ -48,6 +60,36 @@ impl Mishap {
             }
             _ => None,
         }
+    }
+}
+
+/// Who lost what all messages lack.
+#[derive(Clone, Copy)]
+enum Suspect {
+    Logger,
+    LoggerOrBus,
+}
+
+impl Suspect {
+    /// Why it is the one, to go on a line with.
+    const fn why(self) -> &'static str {
+        match self {
+            Self::Logger => {
+                "; all messages lack as many alike, whoever sent them, so it was the logger that lost them, and \
+                 commands that are missing count as sent"
+            }
+            Self::LoggerOrBus => {
+                "; all lose about as many, so suspect the logger or the bus before the machine"
+            }
+        }
+    }
+
+    /// That, and what to do about it.
+    fn told(self) -> String {
+        let why = self.why();
+        format!(
+            "{why}. What is held looks late: record again without loss before an unknown cause is believed"
+        )
     }
 }
 
@@ -92,20 +134,14 @@ impl<'a> Tally<'a> {
 
     /// Whom to suspect of the loss: no device drops its frames as all others do theirs.
     #[allow(clippy::cast_precision_loss)]
-    fn suspect(&self, is_thinned: bool) -> &'static str {
+    fn suspect(&self, is_thinned: bool) -> Option<Suspect> {
         if is_thinned {
-            return "; all messages lack as many alike, whoever sent them, so it was the logger that lost them, and \
-                    commands that are missing count as sent. What is held looks late: record again without loss \
-                    before an unknown cause is believed";
+            return Some(Suspect::Logger);
         }
         let mean = self.frames as f64 / self.of as f64;
         let alike = self.most_share <= ALIKE * mean;
-        if self.messages >= MANY && 100.0 * mean >= MUCH_PERCENT && alike {
-            "; all lose about as many, so suspect the logger or the bus before the machine. What is held \
-             looks late: record again without loss before an unknown cause is believed"
-        } else {
-            ""
-        }
+        let is_shared = self.messages >= MANY && 100.0 * mean >= MUCH_PERCENT && alike;
+        is_shared.then_some(Suspect::LoggerOrBus)
     }
 
     /// What is told in place of `first` and all that are like it.
@@ -125,7 +161,7 @@ impl<'a> Tally<'a> {
             Mishap::Lost => format!(
                 "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held{}",
                 longest_s * 1e3,
-                self.suspect(is_thinned)
+                self.suspect(is_thinned).map_or_else(String::new, Suspect::told)
             ),
             Mishap::Repeated => format!(
                 "{place}: {some} are there twice, {most}; the repeats are left out, so check how the log was merged"
@@ -178,5 +214,19 @@ mod tests {
         assert!(!of([1, 1, 2, 1, 1, 60]).contains("suspect"), "one device's own");
         let faults = [fault(3, dropped("A", 5)), fault(4, dropped("B", 5))];
         assert!(told(&faults, true)[0].contains("it was the logger"), "somebody counted them all");
+    }
+
+    #[test]
+    fn each_message_of_a_loss_that_all_share_has_the_suspect_with_it() {
+        let faults =
+            [fault(3, dropped("A", 5)), fault(4, dropped("B", 5)), fault(7, FaultKind::Cut)];
+        let each = each_told(&faults, true);
+        for (line, fault) in each.iter().zip(&faults[..2]) {
+            assert!(line.starts_with(&fault.to_string()), "{line}");
+            assert!(line.contains("it was the logger that lost them"), "{line}");
+        }
+        assert_eq!(each[2], faults[2].to_string());
+        let alone: Vec<String> = faults.iter().map(ToString::to_string).collect();
+        assert_eq!(each_told(&faults, false), alone, "two messages do not tell");
     }
 }

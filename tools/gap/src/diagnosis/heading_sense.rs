@@ -1,5 +1,5 @@
 //! Whether a receiver's heading is the way in which its fixes go: a compass counts clockwise from north, and
-//! some receivers in quarter turns or from the stern.
+//! some receivers in quarter turns or from the stern, and degrees taken for radians turn with no machine.
 
 use core::f64::consts::PI;
 use core::fmt;
@@ -17,6 +17,12 @@ const AGREE: f64 = 0.9;
 /// No antenna beside its place and no machine in a bend goes this far beside its heading, rad.
 const BESIDE_RAD: f64 = 0.35;
 
+/// Courses that turn by less say nothing of a unit: what their pointers lack of their number's length, 0.1 rad as
+/// a root mean square.
+const TURNS: f64 = 0.005;
+/// What is off by this share of what headings as they are told are off by is explained.
+const EXPLAINED: f64 = 0.25;
+
 /// A heading that is not the way in which the machine goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OddHeading {
@@ -24,6 +30,8 @@ pub struct OddHeading {
     pub is_mirrored: bool,
     /// What is to be added to it then, rad, within half a turn.
     pub offset_rad: f64,
+    /// How many times as much it should tell: more than once where degrees were taken for radians on the way.
+    pub scale: f64,
 }
 
 /// What is wrong with the heading of all `runs`, if the fixes say so.
@@ -33,24 +41,42 @@ pub fn odd_heading(runs: &[Signals]) -> Option<OddHeading> {
     if courses.len() < COURSES_MIN {
         return None;
     }
-    let lies =
-        |sense: f64| agreed(courses.iter().map(|[course, heading]| course - sense * heading));
-    match (lies(1.0), lies(-1.0)) {
-        (Some(offset_rad), _) if offset_rad.abs() < BESIDE_RAD => None,
-        (Some(offset_rad), _) => Some(OddHeading { is_mirrored: false, offset_rad }),
-        (None, Some(offset_rad)) => Some(OddHeading { is_mirrored: true, offset_rad }),
-        (None, None) => None,
+    let lies = |is_mirrored: bool, scale: f64| {
+        let times = if is_mirrored { -scale } else { scale };
+        let angles = courses.iter().map(|[course, heading]| course - times * heading);
+        let Pointer { angle_rad, length } = pointer(angles);
+        (length > AGREE)
+            .then_some((OddHeading { is_mirrored, offset_rad: angle_rad, scale }, length))
+    };
+    let full = 180.0 / PI;
+    let others = [(true, 1.0), (false, full), (true, full)];
+    let others = others.into_iter().filter_map(|(is_mirrored, scale)| lies(is_mirrored, scale));
+    let best = others.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let Some((as_told, length)) = lies(false, 1.0) else { return best.map(|(odd, _)| odd) };
+    let lacks = 1.0 - length;
+    let explains = |other: &(OddHeading, f64)| lacks > TURNS && 1.0 - other.1 < EXPLAINED * lacks;
+    match best.filter(explains) {
+        Some((odd, _)) => Some(odd),
+        None => (as_told.offset_rad.abs() > BESIDE_RAD).then_some(as_told),
     }
 }
 
-/// The angle on which `angles` agree, within half a turn; none where they do not.
+/// Where angles point that are laid together as pointers of one length.
+struct Pointer {
+    /// Within half a turn.
+    angle_rad: f64,
+    /// Share of their number that is left: 1 where they are all alike.
+    length: f64,
+}
+
+/// Where `angles` point.
 #[allow(clippy::cast_precision_loss)]
-fn agreed(angles: impl Iterator<Item = f64>) -> Option<f64> {
+fn pointer(angles: impl Iterator<Item = f64>) -> Pointer {
     let (mut east, mut north, mut count) = (0.0, 0.0, 0_usize);
     for angle in angles {
         (east, north, count) = (east + angle.cos(), north + angle.sin(), count + 1);
     }
-    (f64::hypot(east, north) > AGREE * count as f64).then(|| north.atan2(east))
+    Pointer { angle_rad: north.atan2(east), length: f64::hypot(east, north) / count.max(1) as f64 }
 }
 
 /// Course over ground and heading in the middle, rad, wherever the machine went ahead for some metres.
@@ -63,12 +89,22 @@ fn courses(s: &Signals) -> Vec<[f64; 2]> {
             continue;
         }
         let goes_ahead = [from[0], to[0]].iter().all(|at_s| speed_m_s(s, *at_s) > AHEAD_M_S);
-        if let (true, Some([heading, _])) = (goes_ahead, s.heading_at(0.5 * (from[0] + to[0]))) {
+        if let (true, Some(heading)) = (goes_ahead, heading_told(s, 0.5 * (from[0] + to[0]))) {
             all.push([north_m.atan2(east_m), heading]);
         }
         from = to;
     }
     all
+}
+
+/// The heading told nearest to `at_s`, rad; none where the receiver is silent. A mean of the two around it would say
+/// nothing where one of the wrong unit jumps between them, as the machine turns past its zero.
+fn heading_told(s: &Signals, at_s: f64) -> Option<f64> {
+    s.heading_at(at_s)?;
+    let k = s.headings.partition_point(|heading| heading[0] < at_s);
+    let around = s.headings.get(k.checked_sub(1)?..=k)?;
+    let away_s = |told: &&[f64; 3]| (told[0] - at_s).abs();
+    around.iter().min_by(|a, b| away_s(a).total_cmp(&away_s(b))).map(|told| told[1])
 }
 
 /// How fast wheels of a metre and a half would go ahead, m/s.
@@ -82,6 +118,16 @@ fn speed_m_s(s: &Signals, at_s: f64) -> f64 {
 impl fmt::Display for OddHeading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let offset_deg = self.offset_rad.to_degrees();
+        if self.scale > 1.0 {
+            let sense = if self.is_mirrored { "-" } else { "" };
+            return write!(
+                f,
+                "changes by {:.4} times as much as they do, as degrees do that are taken for radians; check unit \
+                 and factor in DBC and mapping, where scale = {sense}{:.1} would do",
+                1.0 / self.scale,
+                self.scale
+            );
+        }
         if self.is_mirrored {
             return write!(
                 f,
@@ -143,6 +189,21 @@ mod tests {
         assert!(odd.to_string().ends_with("scale = -1.0, offset = 90"), "{odd}");
         let straight = odd_heading(&driven(0.0, compass)).expect("a quarter turn beside");
         assert!(straight.to_string().starts_with("is -90 deg beside it"), "{straight}");
+    }
+
+    #[test]
+    fn a_heading_of_the_wrong_unit_is_told_where_the_machine_turns() {
+        for turns in [0.05, -0.1] {
+            let within = |psi: f64| psi.rem_euclid(2.0 * PI);
+            let odd =
+                odd_heading(&driven(turns, |psi| within(psi).to_radians())).expect("it turned");
+            assert!(!odd.is_mirrored && odd.offset_rad.abs() < 0.05, "{odd:?}");
+            assert!(odd.to_string().starts_with("changes by 0.0175 times"), "{odd}");
+            let compass = |psi: f64| within(PI / 2.0 - psi).to_radians();
+            let odd = odd_heading(&driven(turns, compass)).expect("it turned");
+            assert!(odd.to_string().ends_with("scale = -57.3 would do"), "{odd}");
+        }
+        assert_eq!(odd_heading(&driven(0.0, f64::to_radians)), None, "nothing tells");
     }
 
     #[test]

@@ -83,6 +83,8 @@ const fn possible(channel: Channel) -> Option<[f64; 2]> {
         Channel::WheelSpeed(_) => [-20.0, 20.0],
         Channel::FrontJoint | Channel::RearJoint | Channel::TargetJoint => [-1.0, 1.0],
         Channel::Roll | Channel::Pitch => [-1.6, 1.6],
+        // Fifteen turns, where somebody counts them; one is 360 where degrees are taken for radians.
+        Channel::Heading => [-100.0, 100.0],
         Channel::RetractCurrent(_)
         | Channel::ExtendCurrent(_)
         | Channel::PumpCurrent(_)

@@ -8,6 +8,7 @@
 //! | what ordinary tolerances explain | [`Knob`]s, all at once, in [`Evidence`] |
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
+mod along;
 mod attitude_scale;
 mod belief;
 mod candidates;
@@ -40,6 +41,7 @@ mod stands;
 mod unshrunk;
 mod verdict;
 mod wheel_order;
+mod wheel_scale;
 
 pub use attitude_scale::{AttitudeScale, attitude_scale};
 pub use belief::{Base, Belief};
@@ -74,3 +76,4 @@ pub use verdict::{
     Together, Verdict,
 };
 pub use wheel_order::{Swap, swapped_wheels};
+pub use wheel_scale::{WheelScale, wheel_scale};

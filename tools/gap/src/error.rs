@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{AttitudeScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers};
+use crate::diagnosis::{
+    AttitudeScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers, WheelScale,
+};
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -265,11 +267,20 @@ pub enum GapError {
     },
     /// Wheel speeds are not on the scale of the receiver's ways and the throttle.
     #[error(
-        "the wheels roll {scale}, which no machine does; check unit and factor of the wheel speeds in DBC and mapping"
+        "the wheels roll {scale}, which no machine does; check unit, factor and sign of {} in DBC and mapping",
+        scale.to_mend()
     )]
     SpeedScale {
         /// By how much.
         scale: SpeedScale,
+    },
+    /// A wheel's speed is not on the scale of the other wheels' and of the throttle.
+    #[error(
+        "not all wheels turn as one machine's do: {scale} as fast as the others; check unit, factor and sign of it in DBC and mapping"
+    )]
+    WheelScale {
+        /// Which, and by how much.
+        scale: WheelScale,
     },
     /// Roll or pitch is not on the scale of the strokes.
     #[error(

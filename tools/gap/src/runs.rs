@@ -15,7 +15,7 @@ use xt28_sim::Terrain;
 
 use crate::diagnosis::{
     FieldRun, Inquiry, Signals, attitude_scale, load_scale, odd_heading, speed_scale,
-    swapped_chambers, swapped_wheels,
+    swapped_chambers, swapped_wheels, wheel_scale,
 };
 use crate::{About, Decoder, FieldLog, GapError};
 
@@ -177,7 +177,7 @@ impl RunSet {
     /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
     ///
     /// # Errors
-    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::SpeedScale`],
+    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::WheelScale`], [`GapError::SpeedScale`],
     /// [`GapError::HeadingSense`] and [`GapError::AttitudeScale`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
         if let Some(swapped) = swapped_chambers(runs) {
@@ -185,6 +185,9 @@ impl RunSet {
         }
         if let Some(scale) = load_scale(runs) {
             return Err(GapError::LoadScale { scale });
+        }
+        if let Some(scale) = wheel_scale(runs) {
+            return Err(GapError::WheelScale { scale });
         }
         if let Some(scale) = speed_scale(runs) {
             return Err(GapError::SpeedScale { scale });

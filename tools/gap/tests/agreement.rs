@@ -5,6 +5,7 @@ mod own_logs;
 
 use xt28_gap::RunSet;
 use xt28_gap::diagnosis::Signals;
+use xt28_machine::Wheel;
 use xt28_sim::Effects;
 
 fn both() -> [Signals; 2] {
@@ -52,4 +53,22 @@ fn what_an_effect_can_do_is_left_to_the_diagnosis() {
         assert_eq!(scaled(runs.clone(), |s| times(&mut s.roll_rad, factor)), Ok(()));
         assert_eq!(scaled(runs.clone(), |s| times(&mut s.pitch_rad, factor)), Ok(()));
     }
+}
+
+#[test]
+fn one_wheel_of_another_sign_or_scale_is_told_by_its_name_and_so_are_all_six_turned_over() {
+    let runs = both();
+    for wheel in Wheel::ALL {
+        for factor in [-1.0, 10.0, 0.1] {
+            let one = scaled(runs.clone(), |s| {
+                times(&mut s.wheel_speed_rad_s[wheel], factor);
+                times(&mut s.smooth_wheel_speed_rad_s[wheel], factor);
+            });
+            assert!(one.unwrap_err().contains(&format!("wheel_speed.{wheel} ")), "{factor}");
+        }
+    }
+    let all = scaled(runs, |s| {
+        s.wheel_speed_rad_s.0.iter_mut().for_each(|speed| times(speed, -1.0));
+    });
+    assert!(all.unwrap_err().contains("sign of the wheel speeds"));
 }

@@ -6,6 +6,7 @@ use core::fmt;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
+use super::along::Along;
 use super::floor::Signal;
 use super::generator::Generator;
 use super::signals::Signals;
@@ -15,11 +16,6 @@ use super::signals::Signals;
 const ANGLES: [(&str, Signal); 2] = [("roll", Signal::RollSway), ("pitch", Signal::PitchSway)];
 /// Root mean square of what the strokes say that is too little to tell a scale by, rad: 0.04 deg.
 const SWAYS_RAD: f64 = 7.0e-4;
-/// Samples that are too few, ten a second.
-const SAMPLES_MIN: usize = 50;
-/// A reading is of the same motion, on whatever scale, where the two go along like this, or against one another.
-/// Of machines with a fault none had less than 0.8.
-const ALONG: f64 = 0.7;
 /// How many times more or less than the strokes a reading may say. Of machines with a fault none had more
 /// than 1.4: soft tyres, arms whose strokes are read wrong.
 const TIMES_MAX: f64 = 4.0;
@@ -72,18 +68,10 @@ fn sways(s: &Signals) -> [Sways; 2] {
 }
 
 /// How many times what the strokes say a reading is; nothing where little happens or another thing is read.
-#[allow(clippy::cast_precision_loss)]
 fn times<'a>(runs: impl Iterator<Item = &'a Sways>) -> Option<f64> {
-    let (mut strokes, mut both, mut reading, mut count) = (0.0, 0.0, 0.0, 0_usize);
-    for [stroke_rad, read_rad] in runs.flatten() {
-        strokes += stroke_rad * stroke_rad;
-        both += stroke_rad * read_rad;
-        reading += read_rad * read_rad;
-        count += 1;
-    }
-    let moves = count >= SAMPLES_MIN && strokes > SWAYS_RAD * SWAYS_RAD * count as f64;
-    let along = moves && both.abs() > ALONG * (strokes * reading).sqrt();
-    along.then(|| (reading / strokes).sqrt().copysign(both))
+    let along = Along::of(runs.flatten().copied());
+    let [strokes_rad, _] = along.means();
+    along.times().filter(|_| strokes_rad > SWAYS_RAD)
 }
 
 impl fmt::Display for AttitudeScale {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use xt28_bus::candump::ReadError;
 
 use crate::diagnosis::{
-    AttitudeScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers, WheelScale,
+    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers, WheelScale,
 };
 
 /// Why a log cannot be read or replayed.
@@ -281,6 +281,12 @@ pub enum GapError {
     WheelScale {
         /// Which, and by how much.
         scale: WheelScale,
+    },
+    /// A joint does not turn as its valve and the command say.
+    #[error("the joints do not turn as they are steered: {scale} in DBC and mapping")]
+    JointScale {
+        /// Which, by how much, and what to look at.
+        scale: JointScale,
     },
     /// Roll or pitch is not on the scale of the strokes.
     #[error(

@@ -14,7 +14,7 @@ use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
 use crate::diagnosis::{
-    FieldRun, Inquiry, Signals, attitude_scale, load_scale, odd_heading, speed_scale,
+    FieldRun, Inquiry, Signals, attitude_scale, joint_scale, load_scale, odd_heading, speed_scale,
     swapped_chambers, swapped_wheels, wheel_scale,
 };
 use crate::{About, Decoder, FieldLog, GapError};
@@ -178,7 +178,7 @@ impl RunSet {
     ///
     /// # Errors
     /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::WheelScale`], [`GapError::SpeedScale`],
-    /// [`GapError::HeadingSense`] and [`GapError::AttitudeScale`].
+    /// [`GapError::HeadingSense`], [`GapError::JointScale`] and [`GapError::AttitudeScale`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
         if let Some(swapped) = swapped_chambers(runs) {
             return Err(GapError::ChamberOrder { swapped });
@@ -194,6 +194,9 @@ impl RunSet {
         }
         if let Some(odd) = odd_heading(runs) {
             return Err(GapError::HeadingSense { odd });
+        }
+        if let Some(scale) = joint_scale(runs) {
+            return Err(GapError::JointScale { scale });
         }
         attitude_scale(runs).map_or(Ok(()), |scale| Err(GapError::AttitudeScale { scale }))
     }

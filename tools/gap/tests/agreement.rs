@@ -56,6 +56,19 @@ fn what_an_effect_can_do_is_left_to_the_diagnosis() {
 }
 
 #[test]
+fn a_joint_of_another_sign_or_unit_is_told_and_a_command_too() {
+    let runs = both();
+    for factor in [-1.0, 10.0, 0.1, 1.0_f64.to_radians()] {
+        for (k, joint) in ["front", "rear"].into_iter().enumerate() {
+            let one = scaled(runs.clone(), |s| times(&mut s.joint_rad[k], factor)).unwrap_err();
+            assert!(one.contains(&format!("sign of joint.{joint}")), "{factor}: {one}");
+        }
+    }
+    let command = scaled(runs, |s| times(&mut s.target_joint_rad, -1.0)).unwrap_err();
+    assert!(command.contains("sign of target.front_joint"), "{command}");
+}
+
+#[test]
 fn one_wheel_of_another_sign_or_scale_is_told_by_its_name_and_so_are_all_six_turned_over() {
     let runs = both();
     for wheel in Wheel::ALL {
@@ -71,4 +84,23 @@ fn one_wheel_of_another_sign_or_scale_is_told_by_its_name_and_so_are_all_six_tur
         s.wheel_speed_rad_s.0.iter_mut().for_each(|speed| times(speed, -1.0));
     });
     assert!(all.unwrap_err().contains("sign of the wheel speeds"));
+}
+
+/// As far as effects reach, and farther than a machine would be driven with.
+#[test]
+fn steering_and_wheels_with_a_fault_are_left_to_the_diagnosis() {
+    let of = |change: &dyn Fn(&mut Effects)| {
+        let mut effects = Effects::default();
+        change(&mut effects);
+        let runs = ["arms", "drive"].map(|name| own_logs::run(name, &effects, true).signals);
+        scaled(runs, |_| ())
+    };
+    assert_eq!(of(&|e| e.steering.rate.factor = 0.25), Ok(()));
+    assert_eq!(of(&|e| e.steering.rate.factor = 3.0), Ok(()));
+    assert_eq!(of(&|e| e.steering.gain.kp_factor = 0.2), Ok(()));
+    assert_eq!(of(&|e| e.steering.delay.delay_s = 1.0), Ok(()));
+    assert_eq!(of(&|e| e.steering.lag.time_constant_s = 2.0), Ok(()));
+    assert_eq!(of(&|e| e.steering.backlash.width_rad = 0.1), Ok(()));
+    assert_eq!(of(&|e| e.steering.rear_follower.ratio_factor = 0.3), Ok(()));
+    assert_eq!(of(&|e| e.wheels[Wheel::Ml].wheel_speed_scale.factor = 1.5), Ok(()));
 }

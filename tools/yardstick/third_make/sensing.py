@@ -77,7 +77,8 @@ class Sensors:
 
     def joints_deg(self, angle_rad) -> list[float]:
         """Both joints, in hundredths."""
-        there = [math.degrees(a) for a in angle_rad]
+        bias, scale = self._truth.joint_bias_deg, self._truth.joint_scale
+        there = [bias + scale * math.degrees(a) for a in angle_rad]
         if self._joint is None:
             self._joint = there
         keep = math.exp(-0.01 / self._truth.joint_lag_s) if self._truth.joint_lag_s > 0.0 else 0.0

@@ -123,6 +123,8 @@ class Sensors:
     antenna_left_m: float = 0.0
     wander_m: float = 0.0
     joint_lag_s: float = 0.0
+    joint_bias_deg: float = 0.0
+    joint_scale: float = 1.0
     noise: float = 1.0
 
 

@@ -175,3 +175,21 @@ fn an_antenna_that_leans_while_arms_lift_is_no_slip() {
         assert!(left < floors, "{signal}: {left}");
     }
 }
+
+#[test]
+fn a_machine_turns_as_its_joints_read_and_not_as_they_will_read() {
+    let mut runs = signals(Case::draw(9005, Kind::Null).only(Manoeuvre::STurn, 36.0));
+    let machine = Machine::xt28();
+    let floors = |runs: &[Signals]| {
+        rms(&Generator::Turning.residuals(&runs[0], &machine, &Effects::default()), Signal::Turn)
+    };
+    let sound = floors(&runs);
+    for joint in [0, 1] {
+        let run = &mut runs[0];
+        for reading in [&mut run.joint_rad[joint], &mut run.joint_rate_rad_s[joint]] {
+            reading.rotate_right(40); // 0.4 s
+        }
+    }
+    let late = floors(&runs);
+    assert!(sound < 1.2 && late > 2.0, "{sound} floors, with joints that read late {late}");
+}

@@ -28,6 +28,7 @@ pub enum Signal {
     WheelSpeed(Wheel),
     TravelSpeed,
     TravelCourse,
+    Turn,
     BusMissing,
     BusPlace,
     BusUneven,
@@ -68,6 +69,7 @@ impl Signal {
             Self::WheelSpeed(_) => (0.004, 1.0),
             Self::TravelSpeed => (0.012, 1.5),
             Self::TravelCourse => (0.03, 1.5),
+            Self::Turn => (0.003, 1.5),
             Self::BusMissing => (0.01, 1.0),
             Self::BusPlace => (0.03, 1.0),
             // A millisecond of scheduling, or one frame in a hundred.
@@ -119,6 +121,7 @@ impl fmt::Display for Signal {
             Self::WheelSpeed(_) => "wheel speed",
             Self::TravelSpeed => "speed over ground",
             Self::TravelCourse => "course over ground",
+            Self::Turn => "turn over ground",
             Self::BusMissing => "share of commands missing",
             Self::BusPlace => "commands out of their places",
             Self::BusUneven => "intervals between commands",

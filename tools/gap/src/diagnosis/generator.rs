@@ -22,6 +22,7 @@ mod still;
 mod summed;
 mod traction;
 mod travel;
+mod turning;
 
 use core::fmt;
 
@@ -47,6 +48,9 @@ const STANDING: [&str; 3] = ["imu-offset", "seal-stiction", "standstill-drag"];
 const ROLLING: [&str; 4] =
     ["slippery-ground", "soft-tyres", "standstill-drag", "wheel-speed-scale"];
 
+/// Effects that show in how the machine turns beside what its joints read: others turn the joints as well.
+const TURNING: [&str; 2] = ["gnss-latency", "slippery-ground"];
+
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Generator {
@@ -64,6 +68,8 @@ pub enum Generator {
     Stance,
     /// Wheel speeds, arms and joints to one another and to the receiver's fixes.
     Travel,
+    /// Joints and speed over ground to how the receiver says that the machine turns.
+    Turning,
     /// What commands come, and when.
     Bus,
 }
@@ -87,7 +93,7 @@ impl Generator {
         all.extend(Wheel::ALL.map(Self::ArmStroke));
         all.extend(Wheel::ALL.map(Self::ArmEcu));
         all.extend([Self::Joint(0), Self::Joint(1), Self::SteerEcu(0), Self::SteerEcu(1)]);
-        all.extend([Self::Drive, Self::Stance, Self::Travel, Self::Bus]);
+        all.extend([Self::Drive, Self::Stance, Self::Travel, Self::Turning, Self::Bus]);
         all
     }
 
@@ -119,6 +125,7 @@ impl Generator {
                     || name.starts_with("stroke-")
             }
             Self::Travel => ROLLING.contains(&name) || name.starts_with("gnss-"),
+            Self::Turning => TURNING.contains(&name),
             Self::Bus => effect.block == Block::Bus,
         }
     }
@@ -138,7 +145,7 @@ impl Generator {
         let number = match self {
             Self::ArmStroke(wheel) | Self::ArmEcu(wheel) => wheel.index(),
             Self::Joint(joint) | Self::SteerEcu(joint) => joint,
-            Self::Drive | Self::Stance | Self::Travel | Self::Bus => 0,
+            Self::Drive | Self::Stance | Self::Travel | Self::Turning | Self::Bus => 0,
         };
         (self.part(), number)
     }
@@ -148,7 +155,7 @@ impl Generator {
     pub const fn block(self) -> Block {
         match self {
             Self::ArmStroke(_) | Self::ArmEcu(_) => Block::Arms,
-            Self::Joint(_) | Self::SteerEcu(_) => Block::Steering,
+            Self::Joint(_) | Self::SteerEcu(_) | Self::Turning => Block::Steering,
             Self::Drive | Self::Travel => Block::Drive,
             Self::Stance => Block::Payload,
             Self::Bus => Block::Bus,
@@ -166,6 +173,7 @@ impl Generator {
             Self::Drive => "drive",
             Self::Stance => "stance",
             Self::Travel => "travel",
+            Self::Turning => "turning",
             Self::Bus => "bus",
         }
     }
@@ -238,6 +246,10 @@ impl Generator {
                 );
                 all
             }
+            Self::Turning => {
+                let error = turning::turn_error_rad_s(s, machine, effects);
+                vec![thinned(Signal::Turn, error)]
+            }
             Self::Bus => {
                 let e = bus::bus_errors(s, effects);
                 vec![
@@ -263,7 +275,9 @@ impl fmt::Display for Generator {
         match self {
             Self::ArmStroke(w) | Self::ArmEcu(w) => write!(f, "{part} {w}"),
             Self::Joint(j) | Self::SteerEcu(j) => write!(f, "{part} {}", JOINT[*j]),
-            Self::Drive | Self::Stance | Self::Travel | Self::Bus => f.write_str(part),
+            Self::Drive | Self::Stance | Self::Travel | Self::Turning | Self::Bus => {
+                f.write_str(part)
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use xt28_sim::Effects;
 
 use super::floors::Floors;
 use super::generator::{Generator, Residual};
-use super::signals::Signals;
+use super::signals::{Signals, unwound};
 use crate::{Channel, PumpSide, Series};
 
 /// Readings of one stretch of a log whose noise is estimated together.
@@ -64,6 +64,9 @@ fn noisier(all: &BTreeMap<Channel, Series>) -> BTreeMap<Channel, Series> {
     let mut all = all.clone();
     for channel in readings() {
         let Some(series) = all.get_mut(&channel) else { continue };
+        if channel == Channel::Heading {
+            *series = unwound(series); // A full turn is no noise.
+        }
         // A flat density of this width has that standard deviation.
         let half = 3.0_f64.sqrt() * white_noise(series);
         if half > 0.0 {
@@ -95,7 +98,7 @@ fn readings() -> Vec<Channel> {
     let mut all: Vec<Channel> = wheels.iter().flat_map(|make| PerWheel::from_fn(*make).0).collect();
     all.extend(PumpSide::ALL.map(Channel::PumpPressure));
     all.extend([Channel::FrontJoint, Channel::RearJoint, Channel::Roll, Channel::Pitch]);
-    all.extend([Channel::East, Channel::North]);
+    all.extend([Channel::East, Channel::North, Channel::Heading]);
     all
 }
 

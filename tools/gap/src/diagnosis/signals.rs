@@ -17,6 +17,7 @@ use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 pub(in crate::diagnosis) use command_period::{PERIOD_S, command_period_s};
 use filled::filled;
 use made::Made;
+pub(in crate::diagnosis) use receiver::unwound;
 use uncut::{CUT_M, uncut};
 
 /// Time series by channel, as logs and replays have them.

@@ -67,8 +67,20 @@ impl Axles {
 
     /// The motion whose axles slip least sideways.
     pub(super) fn rolling(&self, angle: [f64; 2], rate: [f64; 2], ahead: f64) -> FrameMotion {
+        self.rolling_under([1.0; 3], angle, rate, ahead)
+    }
+
+    /// The motion whose axles slip least sideways, each counted as much as it is pressed to the ground by
+    /// `load`, in any unit; at least two of them have some.
+    pub(super) fn rolling_under(
+        &self,
+        load: [f64; 3],
+        angle: [f64; 2],
+        rate: [f64; 2],
+        ahead: f64,
+    ) -> FrameMotion {
         let [none, by_side, by_turn] = self.slips(angle, rate, ahead);
-        let dot = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| load[k] * a[k] * b[k]).sum::<f64>();
         let (ss, st, tt) = (dot(by_side, by_side), dot(by_side, by_turn), dot(by_turn, by_turn));
         let (s, t) = (-dot(by_side, none), -dot(by_turn, none));
         let determinant = ss * tt - st * st;

@@ -36,7 +36,7 @@ const ORDINARY: f64 = 1.75;
 /// Speed at which a log's wheels tell what resists them, rad/s.
 const TRAVELS_RAD_S: f64 = 0.3;
 /// Samples from one look to the next.
-const STRIDE: usize = 5;
+pub(super) const STRIDE: usize = 5;
 /// Weight of what pushes tell of a speed, beside a wheel that holds.
 const COASTS: f64 = 0.02;
 /// How fast a wheel's foot may give way to what an idle motor holds it by, m/s/N: from not at all to a little
@@ -172,7 +172,7 @@ fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
 }
 
 /// How wheels move with their arms and frames at each step.
-fn wheel_kinematics(s: &Signals, machine: &Machine) -> Vec<Kinematics> {
+pub(super) fn wheel_kinematics(s: &Signals, machine: &Machine) -> Vec<Kinematics> {
     let (axles, linkage) = (Axles::new(machine), machine.linkage());
     let at = |i: usize| {
         let pose = PerWheel::from_fn(|w| linkage.at_stroke(s.smooth_stroke_m[w][i]));

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::{AllSeries, Signals};
-use crate::Channel;
+use crate::{Channel, Series};
 
 /// Time between two headings beyond which nothing is said in between, s: a machine that steers has turned
 /// by some degrees meanwhile (a receiver tells eight a second).
@@ -48,28 +48,29 @@ pub(super) fn fixes(all: &AllSeries) -> Vec<[f64; 3]> {
     east.iter().filter_map(|(at_s, x)| Some([at_s, x, north.at(at_s)?])).collect()
 }
 
+/// A heading's series without its jumps by a full turn.
+pub(in crate::diagnosis) fn unwound(series: &Series) -> Series {
+    let (mut turned, mut last) = (0.0, None);
+    let unwind = |(at_s, heading): (f64, f64)| {
+        let step = heading - last.replace(heading).unwrap_or(0.0);
+        turned += step - TAU * (step / TAU).round();
+        (at_s, turned)
+    };
+    series.iter().map(unwind).collect()
+}
+
 /// Headings unwound, with their instants and their slope over a second: s, rad, rad/s.
 pub(super) fn headings(all: &AllSeries) -> Vec<[f64; 3]> {
     const SPAN: usize = 4;
     let Some(series) = all.get(&Channel::Heading) else { return Vec::new() };
-    let (mut turned, mut last) = (0.0, None);
-    let unwound: Vec<[f64; 2]> = series
-        .iter()
-        .map(|(at_s, heading)| {
-            let before = last.replace(heading).unwrap_or(heading);
-            let step = heading - before;
-            turned += step - TAU * (step / TAU).round();
-            [at_s, turned]
-        })
-        .collect();
-    let first = series.iter().next().map_or(0.0, |(_, heading)| heading);
-    let first = first - TAU * (first / TAU).round();
+    let unwound: Vec<[f64; 2]> =
+        unwound(series).iter().map(|(at_s, heading)| [at_s, heading]).collect();
     let end = unwound.len().saturating_sub(1);
     (0..unwound.len())
         .map(|k| {
             let (a, b) = (unwound[k.saturating_sub(SPAN)], unwound[(k + SPAN).min(end)]);
             let rate = if b[0] > a[0] { (b[1] - a[1]) / (b[0] - a[0]) } else { 0.0 };
-            [unwound[k][0], first + unwound[k][1], rate]
+            [unwound[k][0], unwound[k][1], rate]
         })
         .collect()
 }
@@ -77,7 +78,6 @@ pub(super) fn headings(all: &AllSeries) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Series;
 
     /// A machine that turns by a tenth of a radian a second past north, without what `lost` names.
     fn turning(lost: impl Fn(f64) -> bool) -> Vec<[f64; 3]> {

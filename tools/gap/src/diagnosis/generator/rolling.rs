@@ -45,17 +45,56 @@ const CREEPS_M_S_N: [f64; 8] = [0.0, 1.2e-6, 2.0e-6, 3.2e-6, 5.0e-6, 8.0e-6, 1.2
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
 const BENT_RAD: f64 = 0.02;
 
-/// Rolling over a run. No log says how its tyres creep where idle motors hold them; what the wheels part by
-/// does.
+/// Rolling over a run. No log says how its tyres creep where idle motors hold them or some wheels roll harder than
+/// others; what the wheels part by does.
 #[must_use]
 pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) -> RollingErrors {
     let free = held_errors(s, machine, effects, None);
     let parts = Parts::new(machine, effects);
-    let Some(held) = Held::new(s, machine, effects, &parts, 0.0) else { return free };
+    let Some(held) = Held::new(s, machine, effects, &parts, 0.0) else {
+        return if rolls_evenly(effects) { free } else { creeping(s, machine, effects, &free) };
+    };
     let left = |holds: &Holds| left_m2_s2(&free, holds, parts.radius_m);
     let holds = CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n));
     let best = holds.iter().min_by(|a, b| left(a).total_cmp(&left(b)));
     held_errors(s, machine, effects, best)
+}
+
+/// Whether all wheels roll as hard as one another.
+fn rolls_evenly(effects: &Effects) -> bool {
+    let first = effects.wheels[Wheel::Fr].rolling_resistance.added;
+    effects.wheels.iter().all(|(_, e)| e.rolling_resistance.added == first)
+}
+
+/// Rolling on tyres that all creep by what leaves least: `free` is what is left of wheels that do not. A wheel that
+/// rolls harder than others is pushed by the ground, and turns the slower.
+fn creeping(
+    s: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    free: &RollingErrors,
+) -> RollingErrors {
+    let on = |creep_m_s_n: f64| {
+        let mut effects = effects.clone();
+        for wheel in Wheel::ALL {
+            effects.wheels[wheel].slippery_ground.creep_m_s_n += creep_m_s_n;
+        }
+        held_errors(s, machine, &effects, None)
+    };
+    let most_m_s_n = CREEPS_M_S_N[CREEPS_M_S_N.len() - 1];
+    let most = on(most_m_s_n);
+    // What tyres take of an error is in proportion to how they creep.
+    let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
+    for wheel in Wheel::ALL {
+        for (free, most) in free.wheel_rad_s[wheel].iter().zip(&most.wheel_rad_s[wheel]) {
+            let taken = free - most;
+            if taken.is_finite() {
+                product += taken * free;
+                square += taken * taken;
+            }
+        }
+    }
+    on((product / square).clamp(0.0, 1.0) * most_m_s_n)
 }
 
 /// Squares of what is about left of the wheels' speeds where `holds` drag their feet, of which none but
@@ -236,6 +275,7 @@ fn expected_speeds(
 mod tests {
     use xt28_machine::Axle;
 
+    use super::super::circuits::PRESSURE_AT_TORQUE_MAX_PA;
     use super::super::still::still;
     use super::*;
 
@@ -275,5 +315,43 @@ mod tests {
         let [free, held] = [0.0, 6.0e3].map(largest_rad_s);
         assert!(free > 0.03, "{free}");
         assert!(held < 0.3 * free, "{held} of {free}");
+    }
+
+    /// A machine that drives straight on tyres that creep by 6 um/s a newton, its left wheels rolling harder by
+    /// `added`, all pushed alike by 1.5 kNm.
+    fn dragged(added: f64) -> Signals {
+        let (machine, mut s) = (Machine::xt28(), still(20));
+        for pump in [1, 3] {
+            s.pump_pressure_pa[pump]
+                .fill(1.5e3 / machine.wheels.torque_max_nm * PRESSURE_AT_TORQUE_MAX_PA);
+        }
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(25.0e3);
+            let slower = if w.side() == Side::Left { 6.0e-6 * added * 25.0e3 } else { 0.0 };
+            for speed in [&mut s.smooth_wheel_speed_rad_s[w], &mut s.wheel_speed_rad_s[w]] {
+                speed.fill((1.0 - slower) / machine.wheels.radius_m);
+            }
+        }
+        s
+    }
+
+    #[test]
+    fn wheels_that_roll_harder_than_others_turn_slower_on_tyres_that_creep() {
+        let (s, machine) = (dragged(0.06), Machine::xt28());
+        let largest = |harder: &[Wheel]| {
+            let mut effects = Effects::default();
+            for w in harder {
+                effects.wheels[*w].rolling_resistance.added = 0.06;
+            }
+            let errors = rolling_errors(&s, &machine, &effects);
+            let of =
+                |(_, e): (_, &Samples)| e[500..1500].iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+            errors.wheel_rad_s.iter().map(of).fold(0.0, f64::max)
+        };
+        let left = largest(&[Wheel::Fl, Wheel::Ml, Wheel::Bl]);
+        for others in [&[][..], &Wheel::ALL, &[Wheel::Fr, Wheel::Mr, Wheel::Br], &[Wheel::Ml]] {
+            let other = largest(others);
+            assert!(left < 0.6 * other, "{left}, with {others:?} {other}");
+        }
     }
 }

@@ -181,7 +181,7 @@ fn a_machine_turns_as_its_joints_read_and_not_as_they_will_read() {
     let mut runs = signals(Case::draw(9005, Kind::Null).only(Manoeuvre::STurn, 36.0));
     let machine = Machine::xt28();
     let floors = |runs: &[Signals]| {
-        rms(&Generator::Turning.residuals(&runs[0], &machine, &Effects::default()), Signal::Turn)
+        rms(&Generator::Turning.residuals(&runs[0], &machine, &Effects::default()), Signal::YawRate)
     };
     let sound = floors(&runs);
     for joint in [0, 1] {

@@ -247,8 +247,8 @@ impl Generator {
                 all
             }
             Self::Turning => {
-                let error = turning::turn_error_rad_s(s, machine, effects);
-                vec![thinned(Signal::Turn, error)]
+                let error = turning::yaw_rate_error_rad_s(s, machine, effects);
+                vec![thinned(Signal::YawRate, error)]
             }
             Self::Bus => {
                 let e = bus::bus_errors(s, effects);

@@ -48,7 +48,7 @@ const HOLDS: f64 = 0.6;
 ///
 /// No log says how far its tyres creep. What the turns of a whole run leave does.
 #[must_use]
-pub(super) fn turn_error_rad_s(s: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+pub(super) fn yaw_rate_error_rad_s(s: &Signals, machine: &Machine, effects: &Effects) -> Samples {
     let count = s.len / STRIDE;
     if s.headings.is_empty() || Grade::known(s).is_none() {
         return vec![f64::NAN; count];
@@ -63,7 +63,7 @@ pub(super) fn turn_error_rad_s(s: &Signals, machine: &Machine, effects: &Effects
     let lacks = |friction: f64| (1.0 - friction / HOLDS).max(0.0) / 6.0;
     let lacking = effects.wheels.iter().map(|(_, e)| lacks(e.slippery_ground.friction_factor));
     let slides = SLIDES * lacking.sum::<f64>();
-    let sigma = Signal::Turn.floor().sigma;
+    let sigma = Signal::YawRate.floor().sigma;
     let error = |[said, read]: [f64; 2]| {
         let joints = share * said;
         // A machine that slides turns less than its joints ask for, by as much as it may.
@@ -193,11 +193,11 @@ mod tests {
 
     /// Root mean square of what is told of a run, floors.
     fn floors(s: &Signals, effects: &Effects) -> f64 {
-        let told = turn_error_rad_s(s, &Machine::xt28(), effects).into_iter();
+        let told = yaw_rate_error_rad_s(s, &Machine::xt28(), effects).into_iter();
         let told: Samples = told.filter(|error| error.is_finite()).collect();
         assert!(told.len() > 300, "{}", told.len());
         let square = told.iter().map(|error| error * error).sum::<f64>() / told.len() as f64;
-        square.sqrt() / Signal::Turn.floor().sigma
+        square.sqrt() / Signal::YawRate.floor().sigma
     }
 
     #[test]
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn nothing_is_told_at_standstill_or_without_a_receiver() {
         let told = |s: &Signals| {
-            let errors = turn_error_rad_s(s, &Machine::xt28(), &Effects::default());
+            let errors = yaw_rate_error_rad_s(s, &Machine::xt28(), &Effects::default());
             errors.iter().any(|error| error.is_finite())
         };
         assert!(!told(&still(20)));

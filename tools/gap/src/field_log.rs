@@ -203,7 +203,7 @@ impl FieldLog {
         each_told(&self.faults, self.is_thinned)
     }
 
-    /// Whether who wrote it lost frames of every message alike, so that none that is missing was lost on the bus.
+    /// Whether frames of every message are missing alike, so that no node lost them, but the bus or who wrote the log.
     #[must_use]
     pub const fn is_thinned(&self) -> bool {
         self.is_thinned

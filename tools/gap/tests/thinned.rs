@@ -1,5 +1,5 @@
-//! A logger that loses frames of everybody, and a bus that loses commands: one log lacks both, the machine heard
-//! the first.
+//! Frames that everybody lacks, and commands alone: both count as lost on the bus, and of the first it is said that it may
+//! have been the logger.
 
 mod own_logs;
 
@@ -35,15 +35,15 @@ fn missing(log: &FieldLog) -> f64 {
 }
 
 #[test]
-fn what_the_logger_lost_of_everybody_was_not_lost_on_the_bus() {
+fn what_everybody_lacks_is_missing_and_may_be_the_loggers() {
     let log = without(|_| true);
     assert!(log.is_thinned(), "{:?}", log.told_faults());
-    assert!(missing(&log) < 3.0, "{} floors", missing(&log));
+    assert!(missing(&log) > 3.0, "{} floors", missing(&log));
     let told = log.told_faults().join("\n");
-    assert!(told.contains("it was the logger that lost them"), "{told}");
+    assert!(told.contains("the bus or the logger that lost them"), "{told}");
     let lost: Vec<String> =
         log.each_fault().into_iter().filter(|fault| fault.contains("is missing")).collect();
-    assert!(!lost.is_empty() && lost.iter().all(|line| line.contains("it was the logger")));
+    assert!(!lost.is_empty() && lost.iter().all(|line| line.contains("the bus or the logger")));
 }
 
 #[test]

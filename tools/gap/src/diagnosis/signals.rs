@@ -1,7 +1,6 @@
 //! A log on one clock: every channel that diagnosis reads, sampled a hundred times a second.
 
 mod command_period;
-mod filled;
 mod made;
 mod receiver;
 mod uncut;
@@ -15,7 +14,6 @@ use xt28_sim::Terrain;
 use super::floors::Floors;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 pub(in crate::diagnosis) use command_period::{PERIOD_S, command_period_s};
-use filled::filled;
 use made::Made;
 pub(in crate::diagnosis) use receiver::unwound;
 use uncut::{CUT_M, uncut};
@@ -105,18 +103,12 @@ pub struct Signals {
 }
 
 impl Signals {
-    /// The channels of `log`, sampled from its start to its end. What who wrote it lost of the commands came.
+    /// The channels of `log`, sampled from its start to its end.
     ///
     /// # Errors
     /// [`GapError::Unmeasured`] names the channels that the log has not.
     pub fn new(log: &FieldLog, terrain: Terrain) -> Result<Self, GapError> {
-        let signals = Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)?;
-        if !log.is_thinned() {
-            return Ok(signals);
-        }
-        let period_s = command_period_s(&signals);
-        let command_times_s = signals.command_times_s.each_ref().map(|row| filled(row, period_s));
-        Ok(Self { command_times_s, ..signals })
+        Self::of_series(log.name(), log.all_series(), log.duration_s(), terrain)
     }
 
     /// `series` sampled for `duration_s` s, under the name of `name`.

@@ -1,5 +1,5 @@
-//! Whether who wrote a log lost some of its frames: then all messages lack as many alike, whoever sent them. A node
-//! that does not hear, or a bus that does not carry, costs the frames of some.
+//! Whether all messages of a log lack as many frames alike, whoever sent them: then it was no node that lost them, but
+//! the bus, or who wrote the log.
 
 /// A log with fewer messages than this has not all senders in it.
 const MESSAGES_MIN: usize = 10;
@@ -34,7 +34,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loss_that_all_share_is_the_loggers() {
+    fn a_loss_that_all_share_is_no_nodes() {
         assert!(of([150, 141, 163, 155, 139, 150, 158, 144, 149, 152, 9, 14]));
     }
 

@@ -3,7 +3,7 @@
 use super::{FaultKind, LogFault};
 
 /// Faults of one log, a line each; lost frames of several messages share one line, and so do repeated
-/// ones. It stands where the first of them stood. With `is_thinned`, it was who wrote the log that lost them.
+/// ones. It stands where the first of them stood. With `is_thinned`, all lack as many alike.
 pub(crate) fn told(faults: &[LogFault], is_thinned: bool) -> Vec<String> {
     let [mut lost, mut repeated] =
         [Tally::of(faults, Mishap::Lost), Tally::of(faults, Mishap::Repeated)];
@@ -66,7 +66,8 @@ impl Mishap {
 /// Who lost what all messages lack.
 #[derive(Clone, Copy)]
 enum Suspect {
-    Logger,
+    /// All lack as many alike: whether the bus lost them or who wrote the log, no log of the bus can tell.
+    Everybody,
     LoggerOrBus,
 }
 
@@ -74,9 +75,9 @@ impl Suspect {
     /// Why it is the one, to go on a line with.
     const fn why(self) -> &'static str {
         match self {
-            Self::Logger => {
-                "; all messages lack as many alike, whoever sent them, so it was the logger that lost them, and \
-                 commands that are missing count as sent"
+            Self::Everybody => {
+                "; all messages lack as many alike, whoever sent them, so it was the bus or the logger that lost \
+                 them, which this log cannot tell, and commands that are missing count as lost on the bus"
             }
             Self::LoggerOrBus => {
                 "; all lose about as many, so suspect the logger or the bus before the machine"
@@ -136,7 +137,7 @@ impl<'a> Tally<'a> {
     #[allow(clippy::cast_precision_loss)]
     fn suspect(&self, is_thinned: bool) -> Option<Suspect> {
         if is_thinned {
-            return Some(Suspect::Logger);
+            return Some(Suspect::Everybody);
         }
         let mean = self.frames as f64 / self.of as f64;
         let alike = self.most_share <= ALIKE * mean;
@@ -213,7 +214,10 @@ mod tests {
         assert!(of([5, 4, 6, 5, 5, 7]).contains("suspect the logger or the bus"));
         assert!(!of([1, 1, 2, 1, 1, 60]).contains("suspect"), "one device's own");
         let faults = [fault(3, dropped("A", 5)), fault(4, dropped("B", 5))];
-        assert!(told(&faults, true)[0].contains("it was the logger"), "somebody counted them all");
+        assert!(
+            told(&faults, true)[0].contains("the bus or the logger that lost"),
+            "somebody counted them all"
+        );
     }
 
     #[test]
@@ -223,7 +227,7 @@ mod tests {
         let each = each_told(&faults, true);
         for (line, fault) in each.iter().zip(&faults[..2]) {
             assert!(line.starts_with(&fault.to_string()), "{line}");
-            assert!(line.contains("it was the logger that lost them"), "{line}");
+            assert!(line.contains("the bus or the logger that lost them"), "{line}");
         }
         assert_eq!(each[2], faults[2].to_string());
         let alone: Vec<String> = faults.iter().map(ToString::to_string).collect();

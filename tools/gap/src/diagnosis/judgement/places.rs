@@ -17,7 +17,8 @@ const ALIKE: f64 = 0.4;
 const SURE: f64 = 40.0;
 
 /// Places by what their gaps say, in nats: what goes once the best cause is believed, and what is then
-/// still there beyond the floor. A gap that every machine has says nothing, however large it is.
+/// still there beyond the floor; one of several wheels by the wheel that says most, as six that are each off by
+/// little are no more than that. A gap that every machine has says nothing, however large it is.
 pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
     // What was never measured has no gap, and not one of nothing.
     let measured = before.iter().zip(after).filter(|(before, _)| before.samples > 0.0);
@@ -31,7 +32,7 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
             gap_over_noise: of.iter().map(|p| p.left.square.sqrt()).fold(0.0, f64::max),
             share: of.iter().map(|parting| parting.excess).sum::<f64>() / total,
         };
-        places.push((of.iter().map(|parting| parting.nats).sum::<f64>(), place));
+        places.push((of.iter().map(|parting| parting.nats).fold(0.0, f64::max), place));
     };
     let mut of_wheels: BTreeMap<String, Vec<(Wheel, &Parting)>> = BTreeMap::new();
     for parting in &all {
@@ -199,6 +200,16 @@ mod tests {
         let weight = |floors| of(Generator::Stance, Signal::Weight, floors, 17.0);
         let places = places(&[arm(2.2), weight(60.0)], &[arm(1.0), weight(2.0)]);
         assert_eq!(places[0].spot.block, Block::Payload);
+    }
+
+    #[test]
+    fn six_wheels_that_are_off_by_little_come_after_one_speed_that_is_off_by_more() {
+        let arms = Wheel::ALL.into_iter().map(|wheel| left(wheel, 1.9 * 1.9));
+        let speed = Left::evenly(Generator::Travel, Signal::TravelSpeed, 3.0 * 3.0, 40.0);
+        let before: Vec<Left> = arms.chain([speed]).collect();
+        let places = places(&before, &before);
+        assert_eq!(places[0].spot.block, Block::Drive);
+        assert_eq!((places[1].spot.block, places[1].spot.scope), (Block::Arms, Scope::All));
     }
 
     #[test]

@@ -14,8 +14,6 @@ use super::{Findings, held_out_runs, not_shown};
 
 /// A gap beyond this is no other machine's, but may be another wheel's.
 const WHEELS_APART: f64 = 5.0;
-/// A machine whose joints are where their sensors say leaves less of its yaw rate, floors.
-const TURNS_APART: f64 = 1.5;
 /// Share of what there is to explain below which no cause has a name that is worth a look.
 const FAIR_SHARE: f64 = 0.2;
 
@@ -84,7 +82,8 @@ impl Findings {
             use Signal::{ArmOpening, Contact, DriveDifference, Roll, WeightX, WeightY};
             matches!(signal, ArmOpening | Contact(_) | DriveDifference | Roll | WeightX | WeightY)
         };
-        let worst = self.worst()?;
+        let both = self.alone.iter().chain(&self.held.unbent);
+        let worst = both.max_by(|a, b| a.square.total_cmp(&b.square))?;
         (tells(worst.signal) && worst.square > WHEELS_APART * WHEELS_APART).then(|| {
             "wheels in another order than the mapping has them look like this too: compare the names of \
              wheels in the DBC and the mapping with the machine"
@@ -94,18 +93,12 @@ impl Findings {
 
     /// No effect of the catalogue makes a machine turn otherwise than its joints read.
     fn joints_elsewhere(&self) -> Option<String> {
-        let worst = self.worst()?;
-        (worst.signal == Signal::YawRate && worst.square > TURNS_APART * TURNS_APART).then(|| {
+        let (_, signal) = self.objection().at?;
+        (signal == Signal::YawRate).then(|| {
             "the machine does not turn as its joints read: a joint's sensor that is late, off or of another scale \
              looks like this, so compare its reading with the joint, at rest and while it turns"
                 .to_owned()
         })
-    }
-
-    /// The largest gap with no cause believed, of runs fitted and held out.
-    fn worst(&self) -> Option<&Left> {
-        let both = self.alone.iter().chain(&self.held.unbent);
-        both.max_by(|a, b| a.square.total_cmp(&b.square))
     }
 
     /// How much of the squares of all gaps beyond their floors the best cause or pair takes away, beside tolerances
@@ -182,11 +175,13 @@ mod tests {
 
     #[test]
     fn a_machine_that_turns_otherwise_has_joints_to_be_looked_at() {
-        let of = |signal, floors: f64| {
-            let alone = vec![Left::evenly(Generator::Turning, signal, floors * floors, 30.0)];
-            Findings { alone, ..Findings::default() }.joints_elsewhere().is_some()
+        let of = |signal| {
+            let left = |square| vec![Left::evenly(Generator::Turning, signal, square, 100.0)];
+            let single = vec![Candidate::made_up("steer-lag", Scope::All, 90.0)];
+            let [unbent, apart, after] = [9.0, 9.0, 8.0].map(left);
+            Findings { single, unbent, apart, after, ..Findings::default() }.joints_elsewhere()
         };
-        assert!(of(Signal::YawRate, 3.0));
-        assert!(!of(Signal::YawRate, 1.1) && !of(Signal::TravelSpeed, 3.0));
+        assert!(of(Signal::YawRate).is_some_and(|note| note.contains("a joint's sensor")));
+        assert_eq!(of(Signal::TravelSpeed), None);
     }
 }

@@ -39,8 +39,7 @@ const CREEPS: f64 = 0.05;
 /// Share of a turn that ground without friction takes away, all wheels on it (assumed; a third of the friction took
 /// 0.06 on a machine of a third make).
 const SLIDES: f64 = 0.1;
-/// Share of the believed friction from which on no wheel slides sideways in a bend (assumed): joints that turn a machine
-/// need a third of it.
+/// Share of the believed friction from which on no wheel slides sideways in a bend (assumed).
 const HOLDS: f64 = 0.6;
 
 /// Rate of turn that the joints say less the receiver's, rad/s, ten a second, the less certain the faster it
@@ -54,11 +53,10 @@ pub(super) fn yaw_rate_error_rad_s(s: &Signals, machine: &Machine, effects: &Eff
         return vec![f64::NAN; count];
     }
     let said = said_by_joints(s, machine, effects.sensors.gnss_latency.delay_s);
-    let at = |k: usize| {
-        let at_s = (k as f64 + 0.5) * STRIDE as f64 * DT_S;
-        Some([around(&said, at_s)?, rate_read(s, at_s)?])
-    };
-    let turns: Vec<Option<[f64; 2]>> = (0..count).map(at).collect();
+    let at_s = |k: usize| (k as f64 + 0.5) * STRIDE as f64 * DT_S;
+    let read = s.yaw_rates(|| (0..count).map(|k| rate_read(s, at_s(k))).collect());
+    let turns = read.iter().enumerate().map(|(k, read)| Some([around(&said, at_s(k))?, (*read)?]));
+    let turns: Vec<Option<[f64; 2]>> = turns.collect();
     let share = share_turned(turns.iter().flatten());
     let lacks = |friction: f64| (1.0 - friction / HOLDS).max(0.0) / 6.0;
     let lacking = effects.wheels.iter().map(|(_, e)| lacks(e.slippery_ground.friction_factor));
@@ -76,13 +74,13 @@ pub(super) fn yaw_rate_error_rad_s(s: &Signals, machine: &Machine, effects: &Eff
 
 /// The share of what joints say by which the machine turns in all, of such pairs.
 fn share_turned<'a>(turns: impl Iterator<Item = &'a [f64; 2]>) -> f64 {
-    let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
+    let (mut product, mut square) = (0.0, 0.0);
     for [said, read] in turns {
         product += said * read;
         square += said * said;
     }
     let [least, most] = TURNS;
-    if square > f64::MIN_POSITIVE { (product / square).clamp(least, most) } else { 1.0 }
+    if square > 0.0 { (product / square).clamp(least, most) } else { 1.0 }
 }
 
 /// Rate at which the front frame turns by joints and speed over ground, rad/s, at each look, by the clock of a

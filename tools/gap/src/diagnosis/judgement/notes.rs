@@ -40,9 +40,10 @@ pub(super) fn notes(
         ));
     }
     if verdict == Verdict::Unknown {
+        let objection = findings.objection();
         notes.extend(findings.another_order());
-        notes.extend(findings.joints_elsewhere());
-        notes.push(findings.why_unknown());
+        notes.extend(joints_elsewhere(&objection));
+        notes.push(findings.why_unknown(&objection));
     }
     notes
 }
@@ -74,6 +75,16 @@ fn shown_by_held_alone(inquiry: &Inquiry, stood: &[&str]) -> Option<String> {
     })
 }
 
+/// No effect of the catalogue makes a machine turn otherwise than its joints read.
+fn joints_elsewhere(objection: &Objection) -> Option<String> {
+    let (_, signal) = objection.at?;
+    (signal == Signal::YawRate).then(|| {
+        "the machine does not turn as its joints read: a joint's sensor that is late, off or of another scale \
+         looks like this, so compare its reading with the joint, at rest and while it turns"
+            .to_owned()
+    })
+}
+
 impl Findings {
     /// Wheels that a mapping has in another order make a machine that stands as no machine does, while
     /// commands and readings agree.
@@ -91,16 +102,6 @@ impl Findings {
         })
     }
 
-    /// No effect of the catalogue makes a machine turn otherwise than its joints read.
-    fn joints_elsewhere(&self) -> Option<String> {
-        let (_, signal) = self.objection().at?;
-        (signal == Signal::YawRate).then(|| {
-            "the machine does not turn as its joints read: a joint's sensor that is late, off or of another scale \
-             looks like this, so compare its reading with the joint, at rest and while it turns"
-                .to_owned()
-        })
-    }
-
     /// How much of the squares of all gaps beyond their floors the best cause or pair takes away, beside tolerances
     /// that are the same with it and without: where next to nothing, something fits best all the same.
     fn explained_share(&self) -> f64 {
@@ -111,7 +112,7 @@ impl Findings {
         1.0 - beyond(&self.after) / there
     }
 
-    fn why_unknown(&self) -> String {
+    fn why_unknown(&self, objection: &Objection) -> String {
         let believed = self.believed().map(|Candidate { fit: Fit { hypothesis, .. }, .. }| {
             format!("{} ({})", hypothesis.effect.name, hypothesis.scope)
         });
@@ -128,7 +129,7 @@ impl Findings {
             let best = believed.join(" beside ");
             format!("{best} fits best of all in the catalogue, but is not believed")
         };
-        let Objection { times, why, .. } = self.objection();
+        let Objection { times, why, .. } = objection;
         format!("{best}, because {why}: {times:.1} times the most that a right answer would")
     }
 }
@@ -146,7 +147,8 @@ mod tests {
             let left = |square| vec![Left::evenly(Generator::Stance, Signal::Roll, square, 100.0)];
             let single = vec![Candidate::made_up("soft-tyres", Scope::All, 90.0)];
             let [unbent, apart, after] = [400.0, 400.0, square].map(left);
-            Findings { single, unbent, apart, after, ..Findings::default() }.why_unknown()
+            let findings = Findings { single, unbent, apart, after, ..Findings::default() };
+            findings.why_unknown(&findings.objection())
         };
         assert!(of(200.0).starts_with("soft-tyres (all) fits best"), "{}", of(200.0));
         let little = of(380.0);
@@ -179,7 +181,8 @@ mod tests {
             let left = |square| vec![Left::evenly(Generator::Turning, signal, square, 100.0)];
             let single = vec![Candidate::made_up("steer-lag", Scope::All, 90.0)];
             let [unbent, apart, after] = [9.0, 9.0, 8.0].map(left);
-            Findings { single, unbent, apart, after, ..Findings::default() }.joints_elsewhere()
+            let findings = Findings { single, unbent, apart, after, ..Findings::default() };
+            joints_elsewhere(&findings.objection())
         };
         assert!(of(Signal::YawRate).is_some_and(|note| note.contains("a joint's sensor")));
         assert_eq!(of(Signal::TravelSpeed), None);

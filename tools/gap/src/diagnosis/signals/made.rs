@@ -15,6 +15,7 @@ pub(super) struct Made {
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
     kinematics: OnceLock<Vec<Kinematics>>,
     scrubs: OnceLock<Vec<[f64; 2]>>,
+    yaw_rates: OnceLock<Vec<Option<f64>>>,
     torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
 }
 
@@ -50,6 +51,15 @@ impl Signals {
         first: impl FnOnce() -> Vec<[f64; 2]>,
     ) -> &[[f64; 2]] {
         self.made.scrubs.get_or_init(first)
+    }
+
+    /// Rates at which the receiver says that the machine turns, rad/s, at each residual; none where it does not. No
+    /// machine file, knob or effect changes what was said.
+    pub(in crate::diagnosis) fn yaw_rates(
+        &self,
+        first: impl FnOnce() -> Vec<Option<f64>>,
+    ) -> &[Option<f64>] {
+        self.made.yaw_rates.get_or_init(first)
     }
 
     /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds. They need of a

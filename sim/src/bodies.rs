@@ -157,8 +157,8 @@ pub struct Motion {
     pub rate_rad_s: [f64; 3],
     /// Vertical force of the ground on each wheel, mean of the last step, N.
     pub ground_force_n: PerWheel<f64>,
-    /// Force of the ground on anything but the wheels, mean of the last step, N; see
-    /// [`crate::VehicleState::chassis_force_n`] on its peaks.
+    /// What the ground presses on anything but the wheels with, mean of the last step, N; see
+    /// [`crate::VehicleState::chassis_force_n`] on what is summed and on its peaks.
     pub chassis_force_n: f64,
 }
 

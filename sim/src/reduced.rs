@@ -178,17 +178,16 @@ impl ReducedBodies {
         let mut slid = [false; 6];
         self.search.stuck = [false; 6];
         for contact in contacts {
-            let force = contact.impulse() / dt_s;
             match contact.body {
                 Body::Wheel(i) => {
-                    self.ground_force_n[Wheel::ALL[i]] += force.z;
+                    self.ground_force_n[Wheel::ALL[i]] += contact.impulse().z / dt_s;
                     match contact.now.hold {
                         Hold::Open => (),
                         Hold::Sticks => self.search.stuck[i] = true,
                         Hold::Slides => slid[i] = true,
                     }
                 }
-                Body::Frame(_) => self.chassis_force_n += force.length(),
+                Body::Frame(_) => self.chassis_force_n += contact.now.impulse[0] / dt_s,
             }
         }
         for (stuck, slid) in self.search.stuck.iter_mut().zip(slid) {

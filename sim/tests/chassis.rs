@@ -9,17 +9,19 @@ use xt28_sim::{
     Terrain, Vehicle, VehicleState,
 };
 
-/// A stump between the wheels: 0.4 m wide, top at `height_m`, from 2.6 m ahead of the front axle.
-fn stump(height_m: f64) -> Terrain {
-    let on_it = |x: f64, y: f64| (2.6..=3.0).contains(&x) && y.abs() <= 0.2;
+/// A stump between the wheels, from 2.6 m ahead of the front axle: its top is at `height_m` from `right_m`
+/// to `left_m` of the centre line.
+fn stump(height_m: f64, [right_m, left_m]: [f64; 2]) -> Terrain {
+    let on_it = |x: f64, y: f64| (2.6..=3.0).contains(&x) && (right_m..=left_m).contains(&y);
     let extent = Extent { x_m: [-10.0, 15.0], y_m: [-5.0, 5.0] };
     Terrain::Grid(Arc::new(Grid::from_fn(extent, |x, y| if on_it(x, y) { height_m } else { 0.0 })))
 }
 
 /// Stands 2 s, then drives over what lies ahead; every state.
-fn drive(terrain: &Terrain, stroke_m: f64, seconds: f64) -> Vec<VehicleState> {
-    let machine = Machine::xt28();
-    let mut vehicle = Vehicle::new(&machine, terrain, PerWheel::splat(stroke_m));
+fn drive<B: Bodies>(terrain: &Terrain, stroke_m: f64, seconds: f64) -> Vec<VehicleState> {
+    let (machine, effects) = (Machine::xt28(), Effects::default());
+    let strokes = PerWheel::splat(stroke_m);
+    let mut vehicle = Vehicle::<B>::with(&machine, &effects, terrain, strokes, STEP);
     let steps = (seconds / STEP.as_secs_f64()) as u32;
     let pump = |step: u32| ((f64::from(step) * STEP.as_secs_f64() - 2.0) / 2.0).clamp(0.0, 1.0);
     let states = (0..steps).map(|step| {
@@ -36,7 +38,7 @@ fn a_stump_is_felt_when_the_underside_reaches_it_and_not_before() {
     let foremost = parts.hulls[0].iter().filter(|ball| ball.radius_m > 0.2);
     let foremost_m = foremost.map(|b| b.centre_m[0]).fold(f64::MIN, f64::max);
     // With the arms at 0.05 m the underside is 0.38 m above level ground.
-    let states = drive(&stump(0.5), 0.05, 9.0);
+    let states = drive::<RapierBodies>(&stump(0.5, [-0.2, 0.2]), 0.05, 9.0);
     let touch = states.iter().find(|s| s.chassis_force_n > 0.0).expect("it grounds");
     let reach_m = 2.6 - touch.position_m[0] - foremost_m;
     assert!((0.0..0.5).contains(&reach_m), "touched with {reach_m} m to go");
@@ -46,9 +48,21 @@ fn a_stump_is_felt_when_the_underside_reaches_it_and_not_before() {
 
 #[test]
 fn the_same_stump_passes_under_a_machine_that_stands_high() {
-    let states = drive(&stump(0.5), 0.3, 12.0);
+    let states = drive::<RapierBodies>(&stump(0.5, [-0.2, 0.2]), 0.3, 12.0);
     assert!(states.last().unwrap().position_m[0] > 3.0, "it got there");
     assert!(states.iter().all(|s| s.chassis_force_n == 0.0));
+}
+
+/// A stake that is one point of the grid wide, 0.12 m higher than the underside, wherever it stands between
+/// the tyres.
+#[test]
+fn a_stake_is_felt_wherever_it_stands_between_the_tyres() {
+    for y_m in [-0.4, -0.2, 0.0, 0.1, 0.3] {
+        let stake = stump(0.5, [y_m - 0.01, y_m + 0.01]);
+        let felt = |states: &[VehicleState]| states.iter().any(|s| s.chassis_force_n > 1e4);
+        assert!(felt(&drive::<RapierBodies>(&stake, 0.05, 6.0)), "{y_m} m, rapier");
+        assert!(felt(&drive::<ReducedBodies>(&stake, 0.05, 6.0)), "{y_m} m, fast core");
+    }
 }
 
 /// A machine without oil drops on its belly. At 60 Hz the engine makes a step of four: what is told is

@@ -208,11 +208,8 @@ impl RapierBodies {
         self.push_wheels(loads, dt_s);
         self.world.integration_parameters.dt = dt_s as Real;
         self.world.step();
-        let push_n = |hull: &HullWatch| {
-            let push_n = self.ground_push_n(hull.collider(), dt_s);
-            push_n.iter().map(|f| f * f).sum::<f64>().sqrt()
-        };
-        self.chassis_force_n = self.hulls.iter().map(push_n).sum();
+        let pressed_n = |hull: &HullWatch| self.pressed_n(hull.collider(), dt_s);
+        self.chassis_force_n = self.hulls.iter().map(pressed_n).sum();
     }
 
     /// How a wheel met the ground at the start of the last step, where its force comes from.
@@ -286,21 +283,13 @@ impl RapierBodies {
         }
     }
 
-    /// What the ground's pressure pushed a part with over the last step of `dt_s` s, N.
-    fn ground_push_n(&self, collider: ColliderHandle, dt_s: f64) -> [f64; 3] {
+    /// What the ground pressed on a part with over the last step of `dt_s` s, N.
+    fn pressed_n(&self, collider: ColliderHandle, dt_s: f64) -> f64 {
         let Some(pair) = self.world.narrow_phase.contact_pair(self.ground, collider) else {
-            return [0.0; 3];
+            return 0.0;
         };
-        let away = if pair.collider1 == self.ground { 1.0 } else { -1.0 };
-        let mut push_n = [0.0; 3];
-        for manifold in pair.manifolds() {
-            let normal = manifold.data.normal.to_array().map(f64::from);
-            for point in &manifold.points {
-                let force_n = away * f64::from(point.data.impulse) / dt_s;
-                push_n.iter_mut().zip(normal).for_each(|(push, n)| *push += n * force_n);
-            }
-        }
-        push_n
+        let points = pair.manifolds().iter().flat_map(|manifold| &manifold.points);
+        points.map(|point| f64::from(point.data.impulse) / dt_s).sum()
     }
 
     fn hinge_motion(&self, hinge: Hinge) -> HingeMotion {

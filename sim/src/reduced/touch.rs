@@ -10,9 +10,9 @@ use super::spatial::{Spatial, angular, velocity_at};
 use super::tree::Tree;
 use crate::{HullBall, Terrain};
 
-/// Most contacts of the whole machine: hollows under all wheels at once, or it lies on its side. A
-/// contact beyond the last is lost.
-pub(super) const CONTACTS_MAX: usize = 64;
+/// Most contacts of the whole machine: on its belly, whose balls all touch level ground. A contact beyond the
+/// last is lost.
+pub(super) const CONTACTS_MAX: usize = 96;
 /// Sheet steel on ground (assumed): stiff enough to be seen at once, soft enough for any step.
 const HULL: ContactLaw = ContactLaw { stiffness_n_m: 4.0e6, damping_n_s_m: 6.0e4, friction: 0.5 };
 /// How far from the ground a part of the hull is told to be at most, m.

@@ -4,9 +4,12 @@
 //! the displacement-weighted mean of their speeds follows the pump, giving way under torque. The engine
 //! holds the mean of all six without steady error, within its torque and power.
 //!
-//! Pressure here is a convention, the one of the logs: proportional to the circuit's torque alone, 350 bar
-//! above charge at a wheel's largest. Displacement is left out of it on purpose, so a pressure tells the
-//! torque whatever the motors are set to.
+//! A motor's torque is its displacement times the pressure on it, so what it makes at relief pressure shrinks
+//! with its displacement. The pressure that is told is a convention, the one of the logs: proportional to the
+//! circuit's torque alone, 350 bar above charge at a wheel's largest. It tells the torque whatever the motors
+//! are set to.
+
+mod resume;
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
@@ -21,9 +24,6 @@ const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 const CHARGE_PRESSURE_PA: f64 = 25.0e5;
 /// Pressure above charge at the largest wheel torque, Pa (convention, see above).
 const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
-/// How much harder than by the circuit's own gain a held drive draws the wheels to their speed: within
-/// some 30 ms, and stable at steps of 10 ms.
-const HOLDING_GAIN: f64 = 4.0;
 
 /// Parameters of the transmission.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,49 +114,6 @@ impl Drive {
         DriveState { asked_rad_s: [line.clone(), line], ..DriveState::default() }
     }
 
-    /// A transmission taken up in the middle of what was measured: the throttle has stood for long, and
-    /// what holds the mean speed is what the speeds do not explain of the torques.
-    #[must_use]
-    pub fn resumed(&self, input: &DriveInput, torque_nm: &PerWheel<f64>, dt_s: f64) -> DriveState {
-        let delay_s = self.effects.throttle_delay.delay_s;
-        let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
-        let share = self.effects.engine_droop.speed_share(power_w);
-        let input = &DriveInput { engine_speed_rpm: input.engine_speed_rpm * share, ..*input };
-        let targets = [0, 1].map(|c| self.target_rad_s(c, input));
-        let held_nm = [0, 1].map(|c| {
-            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
-            circuit_nm - self.circuit_gain_nms * (targets[c] - self.mean_rad_s(c, input))
-        });
-        DriveState {
-            asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
-            target_rad_s: targets.map(Lag::new),
-            felt_power_w: Lag::new(power_w),
-            power_w,
-            mean_torque_nm: (held_nm[0] + held_nm[1]) / 2.0,
-        }
-    }
-
-    /// Lets the integral explain the torques measured at the speeds measured, as if they had just come
-    /// about, and draw the wheels to those speeds; throttle and engine stay as they are.
-    pub(crate) fn reload(
-        &self,
-        state: &mut DriveState,
-        input: &DriveInput,
-        speed_rad_s: &PerWheel<f64>,
-        torque_nm: &PerWheel<f64>,
-    ) {
-        let measured = DriveInput { wheel_speed_rad_s: *speed_rad_s, ..*input };
-        let held_nm = [0, 1].map(|c| {
-            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
-            let target = state.target_rad_s[c].value();
-            let (wanted, is) = (self.mean_rad_s(c, &measured), self.mean_rad_s(c, input));
-            circuit_nm - self.circuit_gain_nms * (target - wanted)
-                + HOLDING_GAIN * self.circuit_gain_nms * (wanted - is)
-        });
-        let max = self.wheel_torque_max_nm;
-        state.mean_torque_nm = (0.5 * (held_nm[0] + held_nm[1])).clamp(-max, max);
-    }
-
     /// Torques and pressures now; the state goes on by `dt_s` s.
     pub fn step(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> DriveOutput {
         let droop = &self.effects.engine_droop;
@@ -172,8 +129,8 @@ impl Drive {
         let mut circuit_nm = [0.0; 2];
         for c in 0..2 {
             let own_nm = self.circuit_gain_nms * (targets[c] - means[c]);
-            circuit_nm[c] = (state.mean_torque_nm + own_nm)
-                .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
+            let most_nm = self.torque_max_nm(c, input);
+            circuit_nm[c] = (state.mean_torque_nm + own_nm).clamp(-most_nm, most_nm);
             self.share(c, circuit_nm[c], means[c], input, &mut out.wheel_torque_nm);
         }
         let limit = self.limit_power(input, &mut out);
@@ -187,7 +144,11 @@ impl Drive {
             out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
-        self.integrate(state, mean_error, &circuit_nm, limit, dt_s);
+        let saturated =
+            limit < 1.0 || (0..2).any(|c| circuit_nm[c].abs() >= self.torque_max_nm(c, input));
+        if !(saturated && mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0) {
+            self.integrate(state, mean_error, dt_s);
+        }
         state.power_w = out.power_w;
         out
     }
@@ -211,6 +172,12 @@ impl Drive {
         let full = self.speed_full_rad_s * FULL_DISPLACEMENT_SHARE;
         let engine = input.engine_speed_rpm / self.engine_speed_rpm;
         full * engine * input.pump_displacement[c] * 3.0 / motors
+    }
+
+    /// Mean torque of circuit `c`'s wheels at relief pressure, Nm.
+    fn torque_max_nm(&self, c: usize, input: &DriveInput) -> f64 {
+        let motors: f64 = self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum();
+        self.wheel_torque_max_nm * motors / 3.0
     }
 
     /// Displacement-weighted mean speed of circuit `c`: what the oil flow sees, rad/s.
@@ -238,9 +205,10 @@ impl Drive {
         }
         for &wheel in &self.circuits[c] {
             let off = input.wheel_speed_rad_s[wheel] - mean_rad_s;
-            let share = 3.0 * input.motor_displacement[wheel] / motors;
-            torque_nm[wheel] = ((circuit_nm - slip_trim_nm(off)) * share)
-                .clamp(-self.wheel_torque_max_nm, self.wheel_torque_max_nm);
+            let displacement = input.motor_displacement[wheel];
+            let most_nm = self.wheel_torque_max_nm * displacement;
+            torque_nm[wheel] = ((circuit_nm - slip_trim_nm(off)) * 3.0 * displacement / motors)
+                .clamp(-most_nm, most_nm);
         }
     }
 
@@ -257,20 +225,8 @@ impl Drive {
         limit
     }
 
-    /// Integrates the mean's error unless that would wind up against a limit.
-    fn integrate(
-        &self,
-        state: &mut DriveState,
-        mean_error: f64,
-        circuit_nm: &[f64; 2],
-        limit: f64,
-        dt_s: f64,
-    ) {
+    fn integrate(&self, state: &mut DriveState, mean_error: f64, dt_s: f64) {
         let max = self.wheel_torque_max_nm;
-        let saturated = limit < 1.0 || circuit_nm.iter().any(|nm| nm.abs() >= max);
-        if saturated && mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0 {
-            return;
-        }
         let torque = state.mean_torque_nm + self.mean_integral_nm * mean_error * dt_s;
         state.mean_torque_nm = torque.clamp(-max, max);
     }
@@ -334,6 +290,29 @@ mod tests {
                     assert!(nm.abs() <= machine.wheels.torque_max_nm);
                 }
             }
+        }
+    }
+
+    /// Wheels held: nothing but relief pressure ends the growth of the torque.
+    #[test]
+    fn a_motor_stalls_at_its_share_of_the_largest_torque() {
+        let max_nm = Machine::xt28().wheels.torque_max_nm;
+        let drive = nominal();
+        let mut input = input(1.0, 0.0);
+        // Of the front right wheel's circuit, which is the one that stalls first, and of the rest.
+        for (fr, rest) in [(1.0, 1.0), (1.0 / 3.0, 1.0 / 3.0), (0.4, 0.8)] {
+            input.motor_displacement = PerWheel::splat(rest);
+            input.motor_displacement[Wheel::Fr] = fr;
+            let mut state = drive.at_rest(DT_S);
+            let mut out = DriveOutput::default();
+            (0..4000).for_each(|_| out = drive.step(&mut state, &input, DT_S));
+            for wheel in drive.circuits[0] {
+                let nm = out.wheel_torque_nm[wheel];
+                let want_nm = max_nm * input.motor_displacement[wheel];
+                assert!((nm - want_nm).abs() < 1e-6 * max_nm, "{wheel:?}: {nm} Nm");
+            }
+            // It lets go at once when the pedal does: nothing has wound up beyond relief.
+            assert!(state.mean_torque_nm <= max_nm * 1.01);
         }
     }
 

@@ -260,8 +260,8 @@ impl Actuators {
 
     fn rolling_drag(&self, motion: &Motion) -> PerWheel<RollingDrag> {
         PerWheel::from_fn(|wheel| {
-            let normal_n = motion.ground_force_n[wheel].max(0.0);
-            let most_nm = self.rolling_resistance_m[wheel] * normal_n;
+            let load_n = motion.ground_force_n[wheel].max(0.0);
+            let most_nm = self.rolling_resistance_m[wheel] * load_n;
             RollingDrag::tanh(most_nm, DRAG_FADE_RAD_S, motion.wheel_rate_rad_s[wheel])
         })
     }

@@ -1,6 +1,6 @@
 //! What the nominal machine leaves out: every effect's parameters, neutral unless set.
 //!
-//! One folder a block, one file an effect: what it is, where it acts, its parameters with unit,
+//! One folder a part of the machine, one file an effect: what it is, where it acts, its parameters with unit,
 //! tolerance and range, its law and a source. Blocks read [`Effects`] when they are built; an effect
 //! at its neutral values changes no bit of what the plant does. [`CATALOGUE`] lists them all, so that
 //! an overlay file, a trainer and a diagnoser reach every parameter by name.

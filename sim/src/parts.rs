@@ -35,6 +35,9 @@ pub struct ArmPart {
 
 /// Size of the load of logs whose inertia the payload has: length, width, height, m (assumed).
 const LOAD_BOX_M: [f64; 3] = [4.5, 1.8, 1.2];
+/// Inertia of a wheel across its axle as a share of that about it (assumed): of a thin disc it is a half, a tyre's
+/// width adds the rest.
+const ACROSS_AXLE: f64 = 0.6;
 
 /// A hinge along the machine, sprung towards level, with stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +96,7 @@ impl Parts {
         let joint = |x: f64| [x, 0.0, machine.wheels.radius_m];
         let v = &machine.vehicle;
         let about_axle = m.wheel_kg * v.wheel_gyration_m * v.wheel_gyration_m;
-        let across = 0.6 * about_axle;
+        let across = ACROSS_AXLE * about_axle;
         Self {
             frames: [
                 front,

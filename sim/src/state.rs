@@ -20,7 +20,8 @@ pub struct VehicleState {
     pub wheel_speed_rad_s: PerWheel<f64>,
     /// Drive torques, Nm; forward > 0.
     pub wheel_torque_nm: PerWheel<f64>,
-    /// Vertical force of the ground on each wheel, N.
+    /// Vertical force of the ground on each wheel, its friction included, N; where the ground leans as a whole
+    /// ([`crate::effects::TerrainSlope`]), the force square to that lean.
     pub ground_force_n: PerWheel<f64>,
     /// Sum of what the ground presses on the three frames with, square to itself at each contact, mean of the
     /// last step, N; above zero the machine has grounded. Of an arm its pivot counts, which its frame carries; the

@@ -141,7 +141,8 @@ impl Cylinder {
 
     /// Pressures of chambers A (bore) and B (rod), Pa, that make `oil_force_n`.
     ///
-    /// The chamber that does not carry is at return pressure (assumed, as the machine file says).
+    /// While the cylinder pushes, B is at return pressure (assumed, as the machine file says); while it pulls, A
+    /// stays at what balances that, so that neither jumps where the force changes its sign.
     #[must_use]
     pub fn pressures_pa(&self, oil_force_n: f64) -> [f64; 2] {
         if oil_force_n >= 0.0 {

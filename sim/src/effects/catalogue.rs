@@ -56,7 +56,7 @@ pub fn find(name: &str) -> Option<&'static Effect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{Effects, Scope};
+    use crate::effects::{Block, Effects, Scope};
 
     #[test]
     fn names_are_unique_and_neutral_is_the_default() {
@@ -72,6 +72,41 @@ mod tests {
                 for scope in Scope::ALL {
                     assert_eq!(p.get(&nominal, scope), p.neutral, "{} {}", effect.name, p.name);
                 }
+            }
+        }
+    }
+
+    /// Verdicts are compared across plants by these names, so none may change its block or go.
+    #[test]
+    fn every_name_that_verdicts_share_is_there_and_in_its_block() {
+        let shared = [
+            (
+                Block::Arms,
+                "arm-delay valve-lag valve-deadband valve-hysteresis valve-gain speed-asymmetry \
+                 load-dependent-speed pump-flow-limit leakage-drift unsupported-sag seal-stiction \
+                 accumulator-gas lock-damping arm-gain",
+            ),
+            (
+                Block::Steering,
+                "steer-delay steer-lag steer-backlash steer-rate steer-gain rear-follower-lag",
+            ),
+            (
+                Block::Drive,
+                "throttle-delay drive-lag rolling-resistance standstill-drag slippery-ground engine-droop",
+            ),
+            (Block::Tyre, "soft-tyres"),
+            (Block::Payload, "payload com-shift"),
+            (Block::Ground, "terrain-slope"),
+            (
+                Block::Sensor,
+                "stroke-bias stroke-scale pressure-bias pressure-scale imu-offset wheel-speed-scale \
+                 gnss-latency gnss-lever-arm",
+            ),
+            (Block::Bus, "frame-loss command-jitter"),
+        ];
+        for (block, names) in shared {
+            for name in names.split(' ') {
+                assert_eq!(find(name).map(|effect| effect.block), Some(block), "{name}");
             }
         }
     }

@@ -66,7 +66,8 @@ pub struct Parameter {
     /// Value at which the effect is not there. Where the machine file has the same number, it is the
     /// nominal machine's, and stands for whatever the file says.
     pub neutral: f64,
-    /// Standard deviation that a careful engineer would believe before seeing data.
+    /// Standard deviation that a careful engineer would believe, before seeing data, of machines that he calls
+    /// sound. Sizes in [`Effect::source`] are of what the effect is where it is worth its name, and are larger.
     pub tolerance: f64,
     /// Values the law is made for, ends included.
     pub range: [f64; 2],

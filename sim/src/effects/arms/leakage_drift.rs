@@ -10,8 +10,8 @@ pub struct LeakageDrift {
 }
 
 impl LeakageDrift {
-    /// Extending speed of the creep. A thin gap leaks in proportion to the pressure over it, so
-    /// weight makes the cylinder sink and a hanging wheel draws it out.
+    /// Extending speed of the creep. A thin gap leaks in proportion to the pressure over it, for which the
+    /// cylinder's load stands: weight makes it sink and a hanging wheel draws it out.
     #[must_use]
     pub fn speed_m_s(&self, load_n: f64, nominal_load_n: f64) -> f64 {
         -self.rate_m_s * (load_n / nominal_load_n)

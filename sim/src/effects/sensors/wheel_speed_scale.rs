@@ -1,4 +1,4 @@
-//! `wheel-speed-scale`: a wheel's speed sensor counts more or fewer pulses a turn than assumed.
+//! `wheel-speed-scale`: a wheel's speed is read in proportion too large or too small.
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
@@ -15,7 +15,8 @@ impl Default for WheelSpeedScale {
     }
 }
 
-/// Another ratio of the final drive than the table's: the reading is off, not the speed.
+/// Another ratio of the final drive, or another rolling radius, than the table's: the reading is off, not the
+/// speed.
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "wheel-speed-scale",
     block: Block::Sensor,

@@ -2,6 +2,7 @@
 
 mod frames;
 mod made_up;
+mod own_logs;
 
 use frames::{decoder, once};
 use made_up::{signals, swinging};
@@ -10,6 +11,7 @@ use xt28_gap::diagnosis::{
     Cause, Diagnosis, Estimate, FieldRun, Inquiry, NotTestable, Verdict, next_drive, untested_drive,
 };
 use xt28_machine::Machine;
+use xt28_sim::Effects;
 use xt28_sim::effects::find;
 
 fn inquiry() -> Inquiry {
@@ -75,7 +77,11 @@ fn what_is_sure_needs_no_drive_nor_does_what_has_no_likely_rival() {
     assert!(of(two(0.97, 0.02), 0.0).is_none(), "one is sure");
     assert!(of(two(0.8, 0.005), 0.005).is_none(), "the rest is in no catalogue");
     assert!(of(two(0.005, 0.003), 0.99).is_none(), "the machine is sound");
-    let (next, _) = of(two(0.6, 0.005), 0.3).expect("a cause or none");
+    // Of a machine that was not steered yet: nothing is known of its joints.
+    let unsteered = vec![own_logs::run("arms", &Effects::default(), true)];
+    let late_or_none = Diagnosis { probability_none: 0.3, ..diagnosis(two(0.6, 0.005)) };
+    let next = next_drive(&Inquiry::new(Machine::xt28(), unsteered), &late_or_none).unwrap();
+    let (next, _) = next.expect("a cause or none");
     assert_eq!(next.separates, ["steer-delay", "none"]);
 }
 

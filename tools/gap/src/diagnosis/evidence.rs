@@ -8,6 +8,7 @@
 //! `N + (N + nu) ln((RSS + nu) / (N + nu))` beyond: a block that nothing explains raises its own scale
 //! and does not drown the others.
 
+mod ahead;
 mod bumps;
 mod echo;
 mod left;
@@ -25,6 +26,7 @@ use super::belief::{Base, Belief};
 use super::generator::Generator;
 use super::knob::Knob;
 use super::signals::Signals;
+pub(super) use ahead::Ahead;
 pub use echo::Echo;
 pub use left::Left;
 use left::{cost_of_squares, with_bumps};
@@ -309,15 +311,11 @@ impl<'a> Evidence<'a> {
 
     /// Where the tolerances go, in units of their own.
     fn step(&self, sums: &[Cow<'_, Sums>]) -> DVector<f64> {
-        let mut gradient = DVector::zeros(self.knobs.len());
+        let mut slope = DVector::zeros(self.knobs.len());
         for (watch, sums) in self.watches.iter().zip(sums) {
-            for (weight, slopes) in watch.weights.iter().zip(&sums.gradients) {
-                for (knob, slope) in watch.knobs.iter().zip(slopes.iter()) {
-                    gradient[*knob] -= weight * slope;
-                }
-            }
+            gradient(&mut slope, watch, &watch.weights, sums);
         }
-        self.factor.solve(&gradient)
+        self.factor.solve(&slope)
     }
 
     /// Squares of each watch's groups once the tolerances have gone by `step`.
@@ -335,17 +333,31 @@ impl<'a> Evidence<'a> {
     }
 }
 
+/// Takes what one watch's groups, weighted, ask of the knobs from `slope`.
+fn gradient(slope: &mut DVector<f64>, watch: &Watch, weights: &[f64], sums: &Sums) {
+    for (weight, slopes) in weights.iter().zip(&sums.gradients) {
+        for (knob, by) in watch.knobs.iter().zip(slopes.iter()) {
+            slope[*knob] -= weight * by;
+        }
+    }
+}
+
 /// Precision of the knobs, in units of their tolerances: one's belief and every watch's word.
 fn precision(watches: &[Watch], knobs: usize) -> Cholesky<f64, Dyn> {
     let mut precision = DMatrix::<f64>::identity(knobs, knobs);
     for watch in watches {
-        for (weight, product) in watch.weights.iter().zip(&watch.products) {
-            for (i, a) in watch.knobs.iter().enumerate() {
-                for (j, b) in watch.knobs.iter().enumerate() {
-                    precision[(*a, *b)] += weight * product[(i, j)];
-                }
+        add_precision(&mut precision, watch, &watch.weights);
+    }
+    Cholesky::new(precision).expect("a sum of squares and the identity")
+}
+
+/// Adds one watch's word, its groups weighted.
+fn add_precision(precision: &mut DMatrix<f64>, watch: &Watch, weights: &[f64]) {
+    for (weight, product) in weights.iter().zip(&watch.products) {
+        for (i, a) in watch.knobs.iter().enumerate() {
+            for (j, b) in watch.knobs.iter().enumerate() {
+                precision[(*a, *b)] += weight * product[(i, j)];
             }
         }
     }
-    Cholesky::new(precision).expect("a sum of squares and the identity")
 }

@@ -137,13 +137,23 @@ impl Hypothesis {
         costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
     }
 
+    /// The least of `cost` with what one has to believe for it, sought from `values`.
+    pub(super) fn least(&self, cost: &dyn Fn(&[f64]) -> f64, values: &[f64]) -> f64 {
+        let both = |values: &[f64]| cost(values) + self.disbelief(values);
+        descend(&both, values.to_vec(), self.effect.parameters).cost
+    }
+
+    /// What one has to believe for these values, as a cost.
+    pub(super) fn disbelief(&self, values: &[f64]) -> f64 {
+        let of = |(p, v): (&Parameter, &f64)| disbelief((v - p.neutral) / wide(p));
+        self.effect.parameters.iter().zip(values).map(of).sum()
+    }
+
     /// What is left and what one has to believe for it.
     fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
         let only = |generator: Generator| generator.hears(self.effect, self.scope);
         let effects = self.applied(evidence.base(), values);
-        let of = |(p, v): (&Parameter, &f64)| disbelief((v - p.neutral) / wide(p));
-        let prior: f64 = self.effect.parameters.iter().zip(values).map(of).sum();
-        evidence.cost(Belief { effects: &effects, from_s }, &only) + prior
+        evidence.cost(Belief { effects: &effects, from_s }, &only) + self.disbelief(values)
     }
 
     fn weighed(&self, evidence: &Evidence<'_>, from_s: f64, values: Vec<f64>, cost: f64) -> Fit {

@@ -21,6 +21,7 @@ use super::scales::{Chances, Grounds, Scales};
 use super::verdict::{Diagnosis, NotTestable, Verdict};
 use beginning::is_told;
 use causes::causes;
+pub(super) use causes::temperature;
 use notes::notes;
 use places::{places, unexplained};
 

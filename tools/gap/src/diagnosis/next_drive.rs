@@ -1,47 +1,30 @@
 //! What to drive next: the scripted manoeuvre that would best tell the remaining causes apart.
 //!
-//! Every manoeuvre is driven on our own machine under every leading cause at its fitted size. The
-//! blocks are then driven with what that machine did, under its own cause and under each rival's. Half
-//! the square of how far the two residuals lie apart, in floors and with correlated samples counted
-//! once, is the logarithm of the odds that the drive is expected to give against the rival (the mean
-//! log likelihood ratio of two Gaussians). A manoeuvre is worth what it gives in its worst case, the
-//! pair that it tells apart least.
+//! Every manoeuvre is driven on our own machine under every leading cause at its fitted size. What that
+//! shows is put beside the runs that were driven, and the causes are weighed on all of them as a diagnosis
+//! would: each with its own parameters and all tolerances at their best, differences below a floor worth
+//! nothing. By how much more the rivals then lie apart is what the drive is expected to give. A manoeuvre is
+//! worth what it gives in its worst case, the pair that it tells apart least.
 
 mod manoeuvre;
+mod rivals;
 
 use rayon::prelude::*;
-use xt28_sim::effects::Scope;
 use xt28_sim::{Effects, Solver, Terrain};
 
-use super::generator::Generator;
+use super::evidence::{Ahead, Evidence};
 use super::inquiry::{FieldRun, Inquiry, file_name};
+use super::judgement::temperature;
+use super::knob::Knob;
 use super::signals::Signals;
-use super::verdict::{Cause, Diagnosis, Drive, Next, WORTH_TELLING};
+use super::verdict::{Diagnosis, Drive, Next};
 use crate::{FieldLog, GapError, Replay};
 
 pub use manoeuvre::Manoeuvre;
+use rivals::{Rival, rivals};
 
-/// Causes, or wheels of one, that are told apart, at most.
-const RIVALS: usize = 3;
-/// Beyond this probability an answer has no rivals worth a drive.
-const SURE: f64 = 0.95;
 /// A drive that is expected to give less, nats, is not worth its time.
 const WORTH_MIN: f64 = 1.0;
-
-/// A hypothesis in the running.
-struct Rival {
-    /// What people are told of it.
-    name: String,
-    effects: Effects,
-}
-
-/// A cause at some wheels, and how likely it is to be there.
-struct Place<'a> {
-    cause: &'a Cause,
-    scope: Scope,
-    values: Vec<f64>,
-    probability: f64,
-}
 
 /// The manoeuvre worth most of those that no run is of already, with what it separates; `None` where no
 /// two hypotheses remain, or none of those would tell them apart.
@@ -52,11 +35,15 @@ pub fn next_drive(
     inquiry: &Inquiry,
     diagnosis: &Diagnosis,
 ) -> Result<Option<(Next, Manoeuvre)>, GapError> {
-    let rivals = rivals(inquiry, diagnosis);
+    let (base, rivals) = rivals(inquiry, diagnosis);
     if rivals.len() < 2 {
         return Ok(None);
     }
-    let worth = |manoeuvre: Manoeuvre| Ok((worth(inquiry, &rivals, &manoeuvre)?, manoeuvre));
+    let runs = inquiry.runs.iter().filter(|run| run.fit).map(|run| run.signals.clone());
+    let runs: Vec<Signals> = runs.collect();
+    let temperature = temperature(diagnosis.grounds.evidence_nats);
+    let ground = Ground::new(inquiry, &runs, (&base, &rivals), temperature);
+    let worth = |manoeuvre: Manoeuvre| Ok((ground.worth(&manoeuvre)?, manoeuvre));
     let mut ranked: Vec<(f64, Manoeuvre)> =
         not_made(inquiry).into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -110,88 +97,53 @@ fn is_of(path: &str, name: &str) -> bool {
     stem.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('-'))
 }
 
-/// The least certain of the causes stood by, or the likeliest of all, at each of the wheels that it may be at, and
-/// what may be in its place; the other causes stood by are believed. Fewer than two where nothing is left to
-/// tell apart.
-fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Vec<Rival> {
-    let stood: Vec<&Cause> = diagnosis.stood_by().collect();
-    let Some(leader) = stood.last().copied().or_else(|| diagnosis.causes.first()) else {
-        return Vec::new();
-    };
-    let wheels = leader.scopes.first().map_or(1.0, |(_, share)| *share);
-    // What shows in nothing is no rival: no drive is known to show it.
-    let none = diagnosis.probability_none + diagnosis.probability_unseen;
-    if leader.probability * wheels > SURE || none > SURE {
-        return Vec::new();
-    }
-    let mut base = inquiry.believed.clone();
-    for other in stood.iter().filter(|cause| cause.effect != leader.effect) {
-        Place::likeliest(other).apply(&mut base);
-    }
-    let others = diagnosis.causes.iter().filter(|cause| {
-        let stands = stood.iter().any(|stood| stood.effect == cause.effect);
-        !stands && cause.effect != leader.effect
-    });
-    let mut places = Place::all(leader);
-    places.extend(others.map(Place::likeliest));
-    places.retain(|place| place.probability >= WORTH_TELLING);
-    places.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    places.truncate(RIVALS);
-    let mut rivals: Vec<Rival> = places.iter().map(|place| place.rival(&base, &places)).collect();
-    if diagnosis.probability_none >= WORTH_TELLING {
-        rivals.push(Rival { name: "none".to_owned(), effects: base });
-    }
-    rivals
+/// What the rivals stand on: the runs fitted, with what each rival costs there.
+struct Ground<'a> {
+    inquiry: &'a Inquiry,
+    rivals: &'a [Rival],
+    base: &'a Effects,
+    knobs: Vec<Knob>,
+    evidence: Evidence<'a>,
+    costs: Vec<f64>,
+    /// By which evidence is divided before it becomes odds.
+    temperature: f64,
 }
 
-impl<'a> Place<'a> {
-    /// A cause at the wheels at which it is told.
-    fn likeliest(cause: &'a Cause) -> Self {
-        let values = cause.parameters.iter().map(|estimate| estimate.value[0]).collect();
-        Self { cause, scope: cause.scope, values, probability: cause.probability }
+impl<'a> Ground<'a> {
+    fn new(
+        inquiry: &'a Inquiry,
+        driven: &'a [Signals],
+        (base, rivals): (&'a Effects, &'a [Rival]),
+        temperature: f64,
+    ) -> Self {
+        let knobs = Knob::of(&inquiry.catalogue);
+        let evidence = Evidence::new(driven, &inquiry.machine, base.clone(), &knobs);
+        let least = |rival: &Rival| rival.least(base, &|belief, only| evidence.cost(belief, only));
+        let costs = rivals.par_iter().map(least).collect();
+        Self { inquiry, rivals, base, knobs, evidence, costs, temperature }
     }
 
-    /// A cause at each of the wheels that it may be at.
-    fn all(cause: &'a Cause) -> Vec<Self> {
-        let each = cause.scopes.iter().zip(&cause.values).map(|(&(scope, share), values)| Self {
-            cause,
-            scope,
-            values: values.clone(),
-            probability: share * cause.probability,
+    /// The least that a manoeuvre is expected to give between any two rivals, nats.
+    fn worth(&self, manoeuvre: &Manoeuvre) -> Result<f64, GapError> {
+        let log = manoeuvre.commands();
+        let each = (0..self.rivals.len()).into_par_iter().map(|truth| {
+            let signals = [driven(self.inquiry, &log, &self.rivals[truth].effects)?];
+            Ok(self.given(truth, &signals))
         });
-        let all: Vec<Self> = each.collect();
-        if all.len() > 1 { all } else { vec![Self::likeliest(cause)] }
+        each.try_reduce(|| f64::INFINITY, |a, b| Ok(a.min(b)))
     }
 
-    fn apply(&self, effects: &mut Effects) {
-        for (parameter, value) in self.cause.effect.parameters.iter().zip(&self.values) {
-            let [low, high] = parameter.range;
-            parameter.set(effects, self.scope, value.clamp(low, high));
-        }
+    /// The least that `signals`, foretold with rival `truth`, give for it against any other, nats.
+    fn given(&self, truth: usize, signals: &[Signals]) -> f64 {
+        let Inquiry { machine, .. } = self.inquiry;
+        let foretold = Evidence::new(signals, machine, self.base.clone(), &self.knobs);
+        let ahead = Ahead::new(&self.evidence, &foretold, self.rivals[truth].belief());
+        let cost = |rival: &Rival| rival.least(self.base, &|belief, only| ahead.cost(belief, only));
+        let own = cost(&self.rivals[truth]) - self.costs[truth];
+        let others = (0..self.rivals.len()).filter(|&k| k != truth);
+        let gains = others.map(|k| 0.5 * (cost(&self.rivals[k]) - self.costs[k] - own));
+        (gains.fold(f64::INFINITY, f64::min) / self.temperature).max(0.0)
     }
-
-    /// The rival that it is beside `base`, called by its wheels too where `all` has others of its effect.
-    fn rival(&self, base: &Effects, all: &[Self]) -> Rival {
-        let mut effects = base.clone();
-        self.apply(&mut effects);
-        let name = self.cause.effect.name;
-        let is_alone = all.iter().filter(|other| other.cause.effect.name == name).count() == 1;
-        let name = if is_alone { name.to_owned() } else { format!("{name} ({})", self.scope) };
-        Rival { name, effects }
-    }
-}
-
-/// The least that a manoeuvre is expected to give between any two rivals, nats.
-fn worth(inquiry: &Inquiry, rivals: &[Rival], manoeuvre: &Manoeuvre) -> Result<f64, GapError> {
-    let log = manoeuvre.commands();
-    let mut least = f64::INFINITY;
-    for truth in rivals {
-        let signals = driven(inquiry, &log, &truth.effects)?;
-        for other in rivals.iter().filter(|other| other.name != truth.name) {
-            least = least.min(apart(inquiry, &signals, &truth.effects, &other.effects));
-        }
-    }
-    Ok(least)
 }
 
 /// What our machine shows on a manoeuvre's commands.
@@ -204,22 +156,6 @@ fn driven(inquiry: &Inquiry, log: &FieldLog, effects: &Effects) -> Result<Signal
         }
     }
     Signals::of_series(log.name(), &series, log.duration_s(), Terrain::Flat)
-}
-
-/// Half the squared distance of every block's residuals under two beliefs, nats.
-fn apart(inquiry: &Inquiry, signals: &Signals, own: &Effects, other: &Effects) -> f64 {
-    let of = |generator: Generator| -> f64 {
-        let residuals = |effects| generator.residuals(signals, &inquiry.machine, effects);
-        let pairs = residuals(own).into_iter().zip(residuals(other));
-        pairs
-            .map(|(own, other)| {
-                let steps = own.values.iter().zip(&other.values).map(|(a, b)| a - b);
-                let squares = steps.filter(|step| step.is_finite()).map(|step| step * step);
-                own.signal.weight() * squares.sum::<f64>()
-            })
-            .sum()
-    };
-    0.5 * Generator::all().into_iter().map(of).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -253,8 +253,8 @@ pub struct Next {
     /// Effects that it tells apart, with the wheels of one that may be at several; none where it is for what
     /// it tests alone.
     pub separates: Vec<String>,
-    /// How well it tells them apart: expected logarithm of the odds, nats; `null` in JSON where it is for
-    /// what it tests alone.
+    /// How well it tells them apart: by how much the logarithm of the odds is expected to grow, nats; `null` in
+    /// JSON where it is for what it tests alone.
     pub nats: Option<f64>,
     /// Effects that the runs fitted do not test, or not at every wheel, and that it would.
     pub tests: Vec<&'static str>,
@@ -268,7 +268,7 @@ pub struct Next {
 pub struct Drive {
     /// Name of the scripted manoeuvre.
     pub manoeuvre: String,
-    /// How well it tells apart: expected logarithm of the odds, nats; `null` in JSON as in [`Next`].
+    /// How well it tells apart, as in [`Next`], nats.
     pub nats: Option<f64>,
     /// Effects that the runs fitted do not test, or not at every wheel, and that it would.
     pub tests: Vec<&'static str>,

@@ -13,12 +13,12 @@ use xt28_machine::{Machine, SimTime};
 use xt28_sim::{Effects, Solver};
 
 /// Ticks at the first commands before the log begins.
-const SETTLE: u64 = 500;
+pub(crate) const SETTLE: u64 = 500;
 /// Ticks of a log: 12 s.
 const TICKS: u64 = 1_200;
 
 /// What is commanded at a tick: stroke of the arms, mm, throttle, %, front joint, degrees.
-fn command(manoeuvre: &str, tick: u64) -> ([f64; 6], f64, f64) {
+fn command(manoeuvre: &str, tick: u64) -> Command {
     let s = tick.saturating_sub(SETTLE) as f64 * 0.01;
     let step = |from_s: f64, to_s: f64| if (from_s..to_s).contains(&s) { 1.0 } else { 0.0 };
     match manoeuvre {
@@ -36,9 +36,11 @@ fn command(manoeuvre: &str, tick: u64) -> ([f64; 6], f64, f64) {
     }
 }
 
-fn told(manoeuvre: &str, tick: u64) -> [Frame; 2] {
-    let ([fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm], throttle_percent, front_angle_deg) =
-        command(manoeuvre, tick);
+/// Stroke of the arms, mm, throttle, %, and front joint, degrees.
+pub(crate) type Command = ([f64; 6], f64, f64);
+
+fn told(command: Command, tick: u64) -> [Frame; 2] {
+    let ([fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm], throttle_percent, front_angle_deg) = command;
     let counter = (tick % 15) as u8;
     let mode = ArmTargetMode::ManualPosition;
     let arms = ArmTarget { fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm, mode, counter };
@@ -55,7 +57,11 @@ fn told(manoeuvre: &str, tick: u64) -> [Frame; 2] {
 
 /// One run of the machine with these effects, on level ground, without noise.
 pub(crate) fn run(manoeuvre: &str, effects: &Effects, fit: bool) -> FieldRun {
-    let text = text(manoeuvre, effects);
+    read(manoeuvre, &text(manoeuvre, effects), fit)
+}
+
+/// The run of such a log.
+pub(crate) fn read(manoeuvre: &str, text: &str, fit: bool) -> FieldRun {
     let decoder = Decoder::parse(XT28_DBC, Path::new("xt28.dbc"), &Mapping::default()).unwrap();
     let log = FieldLog::read(text.as_bytes(), manoeuvre, &decoder, false).unwrap();
     FieldRun::new(log, Terrain::Flat, fit).unwrap()
@@ -63,6 +69,11 @@ pub(crate) fn run(manoeuvre: &str, effects: &Effects, fit: bool) -> FieldRun {
 
 /// The log of such a run, as candump writes it, from 1 s on.
 pub(crate) fn text(manoeuvre: &str, effects: &Effects) -> String {
+    text_of(&|tick| command(manoeuvre, tick), TICKS, effects)
+}
+
+/// The same of a drive that is told `command` at each tick of the settling and of so many after.
+pub(crate) fn text_of(command: &dyn Fn(u64) -> Command, ticks: u64, effects: &Effects) -> String {
     let config = EmulatorConfig {
         effects: effects.clone(),
         solver: Solver::Reduced,
@@ -70,7 +81,7 @@ pub(crate) fn text(manoeuvre: &str, effects: &Effects) -> String {
     };
     let mut emulator = Emulator::new(&config);
     let (mut text, mut outbox) = (String::new(), Outbox::with_capacity(64));
-    for tick in 0..SETTLE + TICKS {
+    for tick in 0..SETTLE + ticks {
         let now = SimTime::from_nanos(tick * TICK.as_nanos() as u64);
         let at_s = tick.saturating_sub(SETTLE) as f64 * 0.01;
         let mut log = |later_s: f64, frame: &Frame| {
@@ -84,7 +95,7 @@ pub(crate) fn text(manoeuvre: &str, effects: &Effects) -> String {
                 );
             }
         };
-        for frame in told(manoeuvre, tick) {
+        for frame in told(command(tick), tick) {
             log(0.0, &frame);
             emulator.on_frame(now, &frame);
         }

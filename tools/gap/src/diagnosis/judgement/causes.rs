@@ -52,11 +52,16 @@ fn is_second(second: &Candidate, first_nats: f64) -> f64 {
     turned(second.second_score(), [SECOND[0] + shared, SECOND[1]])
 }
 
+/// By what evidence is divided before it is odds, where the best has so many nats.
+pub(in crate::diagnosis) fn temperature(best_nats: f64) -> f64 {
+    1.0 + TEMPERATURE_SHARE * best_nats.max(0.0)
+}
+
 /// One cause for each effect, at its best scope, with the probability of all its scopes: `known` is shared
 /// among them.
 fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
     let best = rank.first().map_or(0.0, |best| best.score());
-    let temperature = 1.0 + TEMPERATURE_SHARE * best.max(0.0);
+    let temperature = temperature(best);
     let mut of: BTreeMap<&'static str, Vec<(f64, &Candidate)>> = BTreeMap::new();
     for candidate in rank {
         let weight = ((candidate.score() - best) / temperature).exp();

@@ -45,14 +45,14 @@ const CREEPS_M_S_N: [f64; 8] = [0.0, 1.2e-6, 2.0e-6, 3.2e-6, 5.0e-6, 8.0e-6, 1.2
 /// Bend beyond which wheels slip by their drive more than rolling can tell, rad.
 const BENT_RAD: f64 = 0.02;
 
-/// Rolling over a run. No log says how its tyres creep where idle motors hold them or some wheels roll harder than
-/// others; what the wheels part by does.
+/// Rolling over a run. No log says how its tyres creep where idle motors hold them or wheels roll harder than is
+/// known; what the wheels part by does.
 #[must_use]
 pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) -> RollingErrors {
     let free = held_errors(s, machine, effects, None);
     let parts = Parts::new(machine, effects);
     let Some(held) = Held::new(s, machine, effects, &parts, 0.0) else {
-        return if rolls_evenly(effects) { free } else { creeping(s, machine, effects, &free) };
+        return if rolls_harder(effects) { creeping(s, machine, effects, &free) } else { free };
     };
     let left = |holds: &Holds| left_m2_s2(&free, holds, parts.radius_m);
     let holds = CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n));
@@ -60,10 +60,10 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     held_errors(s, machine, effects, best)
 }
 
-/// Whether all wheels roll as hard as one another.
-fn rolls_evenly(effects: &Effects) -> bool {
-    let first = effects.wheels[Wheel::Fr].rolling_resistance.added;
-    effects.wheels.iter().all(|(_, e)| e.rolling_resistance.added == first)
+/// Whether some wheel rolls harder than is known: what resists it goes with its load, so that the ground pushes
+/// the lighter ones along, or holds them, even where all have one coefficient.
+fn rolls_harder(effects: &Effects) -> bool {
+    effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0)
 }
 
 /// Rolling on tyres that all creep by what leaves least: `free` is what is left of wheels that do not. A wheel that

@@ -77,6 +77,9 @@ struct Error {
 /// between wheel and arm or between wheel and ground moves it by 15 mm, and plants differ in that.
 const ROLLING_DOUBT: f64 = 2.0;
 
+/// Shares of the rolling resistance that wheel and arm may have between them: all, as a bearing, or none, as the
+/// ground. No log says which, and a higher coefficient moves weight between the arms by it.
+const INNER_SHARES: [f64; 3] = [1.0, 0.5, 0.0];
 /// How fast a wheel's foot may give way to a force along the ground, m/s/N: not at all, as friction does on
 /// the labelled machines of a second plant (0.1 m/s at 10 kNm), or as in a rigid-body engine whose friction damps
 /// by 60 kN s/m below its cone.
@@ -94,10 +97,12 @@ const UNKNOWN: Error = Error {
 #[must_use]
 pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -> StanceErrors {
     let parts = Parts::new(machine, effects);
-    let carriers = PerWheel::from_fn(|w| Carrier::new(s, machine, effects, &parts, w));
+    let carriers = INNER_SHARES.map(|inner_share| {
+        PerWheel::from_fn(|w| Carrier::new(s, machine, effects, &parts, w, inner_share))
+    });
     let instants = s.instants(|| instants::instants(s, machine));
     let ground = Grade::believed(s, effects);
-    let held_by = |holds: Option<&Holds>| -> Vec<Error> {
+    let carried_by = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>| -> Vec<Error> {
         let judge = |instant: &Instant| {
             let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
                 return UNKNOWN;
@@ -107,6 +112,12 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
             judge(instant, &arms, &parts, (machine, effects), ground).unwrap_or(UNKNOWN)
         };
         instants.iter().map(judge).collect()
+    };
+    let rolls_hard = effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0);
+    let inner_shares = if rolls_hard { &carriers[..] } else { &carriers[..1] };
+    let held_by = |holds: Option<&Holds>| {
+        let each = inner_shares.iter().map(|carriers| carried_by(carriers, holds));
+        each.min_by(|a, b| left(a).total_cmp(&left(b))).unwrap_or_default()
     };
     // No log says how its tyres creep. What the holds of its motors leave does.
     let held = Held::new(s, machine, effects, &parts, PRESSURE_FILTER_S);

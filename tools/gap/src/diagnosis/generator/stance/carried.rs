@@ -22,6 +22,9 @@ pub(super) struct Carrier<'a> {
     own_n: f64,
     /// Rolling resistance per load, m.
     resistance_m: f64,
+    /// Share of it that wheel and arm have between them, as a bearing's, from none: the rest is between wheel
+    /// and ground.
+    inner_share: f64,
     /// Grip of the ground.
     friction: f64,
     /// Friction of the seals as late as the pressures are, N; empty without any.
@@ -35,6 +38,7 @@ impl<'a> Carrier<'a> {
         effects: &'a Effects,
         parts: &'a Parts,
         wheel: Wheel,
+        inner_share: f64,
     ) -> Self {
         let added = effects.wheels[wheel].rolling_resistance.added;
         Self {
@@ -45,6 +49,7 @@ impl<'a> Carrier<'a> {
             own_n: own_n(machine, parts, wheel),
             resistance_m: (machine.wheels.rolling_resistance + added).max(0.0)
                 * machine.wheels.radius_m,
+            inner_share,
             friction: machine.wheels.friction,
             seal_n: seal_friction_n(s, effects, wheel),
         }
@@ -79,7 +84,8 @@ impl<'a> Carrier<'a> {
     }
 
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
-    /// `drop + radius` below the pivot: the motor's torque is between wheel and arm.
+    /// `drop + radius` below the pivot: the motor's torque is between wheel and arm. So does what resists its
+    /// rolling, less the moment of the ground's own resistance about the axle.
     fn moments(&self, instant: &Instant) -> Moments {
         let AtWheel { stroke_m, load_n, rod_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
         let e = &self.effects.wheels[self.wheel];
@@ -88,12 +94,14 @@ impl<'a> Carrier<'a> {
         let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
-        let below_m = self.parts.arms[self.wheel].extends * (pose.drop_m + radius_m) / radius_m;
+        let extends = self.parts.arms[self.wheel].extends;
+        let below_m = extends * (pose.drop_m + radius_m) / radius_m;
+        let resists_m = (below_m - (1.0 - self.inner_share) * extends) * self.resistance_m;
         Moments {
             reach: Reach { reach_m: pose.reach_m, drop_m: pose.drop_m },
             unheld_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * torque_nm,
             below_m,
-            load_arm_m: pose.reach_m - below_m * rolls * self.resistance_m,
+            load_arm_m: pose.reach_m - resists_m * rolls,
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Each effect of the arms by its signature: on the whole vehicle where the vehicle shows it, on a
-//! rig with a single arm where a known load has to be put on.
+//! Effects of the arms in the corners of their laws, beside the table of `signatures`: turning back within a play, loads
+//! that lift off, a pump that others share; on a rig with a single arm where a known load has to be put on.
 
 mod arm_rig;
 
 use arm_rig::{ArmRig, DT_S};
 use xt28_machine::{Machine, PerWheel, Wheel};
-use xt28_sim::effects::{Block, CATALOGUE, Scope, find};
+use xt28_sim::effects::find;
 use xt28_sim::{Actuation, Effects, Plant, RapierBodies, STEP, Terrain, Vehicle, VehicleState};
 
 const FULL_M_S: f64 = 0.212;
@@ -58,31 +58,6 @@ fn pulse(t: f64, on_s: f64, off_s: f64, opening: f64) -> f64 {
 }
 
 #[test]
-fn a_delay_shifts_the_strokes_by_itself() {
-    let command = |t: f64, _: Wheel| pulse(t, 0.1, 1.1, 0.3);
-    let nominal = record(&Effects::default(), 2.0, command);
-    let late = record(&with("arm-delay", "all", &[("delay_s", 0.2)]), 2.0, command);
-    for (then, now) in nominal.iter().zip(&late[40..]) {
-        for wheel in Wheel::ALL {
-            let apart_m = now.stroke_m[wheel] - then.stroke_m[wheel];
-            assert!(apart_m.abs() < 2e-4, "{wheel}: {apart_m}");
-        }
-    }
-    assert!(nominal[60].stroke_m[Wheel::Fr] - late[60].stroke_m[Wheel::Fr] > 5e-3);
-}
-
-#[test]
-fn a_lag_leaves_the_stroke_behind_by_speed_times_its_constant() {
-    let command = |_: f64, _: Wheel| 0.2;
-    let nominal = record(&Effects::default(), 1.5, command);
-    let late = record(&with("valve-lag", "all", &[("time_constant_s", 0.1)]), 1.5, command);
-    for wheel in Wheel::ALL {
-        let behind_m = nominal[299].stroke_m[wheel] - late[299].stroke_m[wheel];
-        assert!((behind_m - 0.2 * FULL_M_S * 0.1).abs() < 2e-4, "{wheel}: {behind_m}");
-    }
-}
-
-#[test]
 fn a_play_keeps_the_speed_when_the_command_turns() {
     // Up to 0.2, then back by less than the play, then by more.
     let command = |t: f64, _: Wheel| {
@@ -113,42 +88,6 @@ fn below_the_deadband_nothing_moves_and_beyond_it_is_missing() {
         let speed_m_s = oil_speed_m_s(&band, wheel, 2.4, 2.9);
         assert!((speed_m_s + 0.06 * FULL_M_S).abs() < 1e-5, "{wheel}: {speed_m_s}");
     }
-}
-
-#[test]
-fn gain_and_asymmetry_scale_the_speeds() {
-    let command = |t: f64, _: Wheel| if t < 1.0 { 0.2 } else { -0.2 };
-    let asymmetric = [("extension_factor", 0.7), ("contraction_factor", 1.4)];
-    for (effects, up, down) in [
-        (with("valve-gain", "front", &[("factor", 1.3)]), 1.3, 1.3),
-        (with("speed-asymmetry", "front", &asymmetric), 0.7, 1.4),
-    ] {
-        let states = record(&effects, 2.0, command);
-        for wheel in Wheel::ALL {
-            let [up, down] = if FRONT.contains(&wheel) { [up, down] } else { [1.0, 1.0] };
-            for (from_s, wanted_m_s) in [(0.4, 0.2 * FULL_M_S * up), (1.4, -0.2 * FULL_M_S * down)]
-            {
-                let speed_m_s = oil_speed_m_s(&states, wheel, from_s, from_s + 0.5);
-                assert!((speed_m_s - wanted_m_s).abs() < 1e-5, "{wheel}: {speed_m_s}");
-            }
-        }
-    }
-}
-
-/// The paper's machine: front heavy, its lighter rear arms extend faster.
-#[test]
-fn heavier_arms_extend_slower_by_the_orifice_law() {
-    let effects = with("load-dependent-speed", "all", &[("droop", 0.02)]);
-    let states = record(&effects, 1.0, |_, _| 0.2);
-    let speeds = PerWheel::from_fn(|wheel| oil_speed_m_s(&states, wheel, 0.4, 0.9));
-    for wheel in Wheel::ALL {
-        let load_pa = states[80..180].iter().map(|s| s.cylinder_force_n[wheel]).sum::<f64>()
-            / 100.0
-            / Machine::xt28().arms.area_bore_m2;
-        let wanted_m_s = 0.2 * FULL_M_S * (1.0 - 0.02 * load_pa / 8e5).sqrt();
-        assert!((speeds[wheel] / wanted_m_s - 1.0).abs() < 5e-3, "{wheel}: {}", speeds[wheel]);
-    }
-    assert!(speeds[Wheel::Br] > 1.1 * speeds[Wheel::Fr], "{speeds:?}");
 }
 
 #[test]
@@ -185,22 +124,6 @@ fn a_short_pump_slows_the_steering_with_the_arms() {
     let slowed = turned(&short, 0.2) / nominal_rad;
     assert!((0.4..0.6).contains(&slowed), "{slowed}");
     assert_eq!(turned(&short, 0.0), turned(&Effects::default(), 0.0));
-}
-
-#[test]
-fn a_leaking_arm_sinks_in_proportion_to_its_load() {
-    let effects = with("leakage-drift", "front", &[("rate_m_s", 0.004)]);
-    let machine = Machine::xt28();
-    let nominal_n = machine.mass_kg() * 9.81 / 6.0 / machine.linkage().at_stroke(0.25).force_ratio;
-    let states = record(&effects, 2.0, |_, _| 0.0);
-    for wheel in Wheel::ALL {
-        let load_n = states.iter().map(|s| s.cylinder_force_n[wheel]).sum::<f64>() / 400.0;
-        let drift_m_s = oil_speed_m_s(&states, wheel, 0.0, 1.99);
-        let leaks = FRONT.contains(&wheel);
-        let wanted_m_s = if leaks { -0.004 * load_n / nominal_n } else { 0.0 };
-        assert!((drift_m_s - wanted_m_s).abs() < 2e-5, "{wheel}: {drift_m_s} {wanted_m_s}");
-        assert!(!leaks || states[399].stroke_m[wheel] < states[0].stroke_m[wheel] - 5e-3);
-    }
 }
 
 /// One wheel drawn up off the ground, then left alone: it hangs, and its arm alone drifts out.
@@ -247,21 +170,6 @@ fn a_threshold_lets_loaded_arms_drift_and_heavier_ones_stay() {
         record(&sag(&[("below_n", 40e3)]), 0.5, closed),
         record(&Effects::default(), 0.5, closed)
     );
-}
-
-/// The load stays what it was; the oil bears the seals on the way up and is helped on the way down.
-#[test]
-fn friction_opens_a_loop_between_the_pressures_up_and_down() {
-    let command = |t: f64, _: Wheel| if t < 1.0 { 0.2 } else { -0.2 };
-    let seals = with("seal-stiction", "all", &[("coulomb_n", 3000.0)]);
-    let (dragged, free) = (record(&seals, 2.0, command), record(&Effects::default(), 2.0, command));
-    // The frame swings for a while after each start, hence the means over half a second.
-    for (from, wanted_n) in [(100, 3000.0), (300, -3000.0)] {
-        let both = dragged[from..from + 100].iter().zip(&free[from..from + 100]);
-        let more = both.map(|(a, b)| a.cylinder_force_n.sum() - b.cylinder_force_n.sum());
-        let mean_n = more.sum::<f64>() / 600.0;
-        assert!((mean_n - wanted_n).abs() < 150.0, "{mean_n}");
-    }
 }
 
 #[test]
@@ -357,30 +265,4 @@ fn damping_scales_the_decay() {
         "{} {wanted}",
         left(2.0) / left(1.0)
     );
-}
-
-/// What acts on the way from command to oil is not there while the arms' valves are closed, and the
-/// ECU's gains are not the plant's.
-#[test]
-fn valve_effects_leave_closed_valves_alone() {
-    let drive = |effects: &Effects| {
-        let strokes = PerWheel::splat(0.17);
-        let mut vehicle: Vehicle<RapierBodies> =
-            Vehicle::with(&Machine::xt28(), effects, &Terrain::Flat, strokes, STEP);
-        let mut actuation = Actuation::idle(1200.0);
-        (actuation.pump_displacement, actuation.steer_opening) = ([0.8; 2], [0.3, 0.1]);
-        (0..600).for_each(|_| vehicle.step(&actuation));
-        *vehicle.state()
-    };
-    let mut effects = Effects::default();
-    let inside =
-        ["leakage-drift", "unsupported-sag", "accumulator-gas", "lock-damping", "seal-stiction"];
-    for effect in CATALOGUE.iter().filter(|e| e.block == Block::Arms && !inside.contains(&e.name)) {
-        for p in effect.parameters.iter().filter(|p| p.name != "flow_m3_s") {
-            p.set(&mut effects, Scope::All, p.neutral + 0.5 * (p.range[1] - p.neutral));
-        }
-    }
-    effects.pump_flow.flow_m3_s = 0.001;
-    assert_ne!(effects, Effects::default());
-    assert_eq!(drive(&effects), drive(&Effects::default()));
 }

@@ -44,41 +44,6 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
     f64::sqrt(sum / count)
 }
 
-#[test]
-fn soft_tyres_sag_by_load_over_stiffness_and_carry_the_weight() {
-    let machine = Machine::xt28();
-    let mut vehicle = vehicle(&machine, &soft(4e5, 1e4), &Terrain::Flat);
-    // On so little damping the machine bounces for a while.
-    (0..2000).for_each(|_| vehicle.step(&Actuation::idle(1200.0)));
-    let s = *vehicle.state();
-    let weight_n = machine.mass_kg() * GRAVITY_M_S2;
-    assert!((s.ground_force_n.sum() / weight_n - 1.0).abs() < 1e-3, "{}", s.ground_force_n.sum());
-    let linkage = machine.linkage();
-    for wheel in Wheel::ALL {
-        let x_m = machine.wheels.axle_x_m[wheel.axle() as usize];
-        let drop_m = linkage.at_stroke(s.stroke_m[wheel]).drop_m - linkage.at_stroke(0.25).drop_m;
-        let sag_m = drop_m - s.position_m[2] - x_m * s.pitch_rad.sin();
-        let wanted_m = s.ground_force_n[wheel] / 4e5;
-        assert!((sag_m - wanted_m).abs() < 2e-3, "{wheel}: {sag_m} m, not {wanted_m} m");
-    }
-}
-
-/// On the front the machine is heavier, so soft tyres let its nose down; a bounce rings.
-#[test]
-fn soft_tyres_show_in_pitch_and_only_where_they_are() {
-    let machine = Machine::xt28();
-    let nominal = *drive(&machine, &Effects::default(), &Terrain::Flat, 3.0).last().unwrap();
-    let all = *drive(&machine, &soft(4e5, 1e4), &Terrain::Flat, 3.0).last().unwrap();
-    let nose_deg = (all.pitch_rad - nominal.pitch_rad).to_degrees();
-    assert!((-1.5..-0.3).contains(&nose_deg), "{nose_deg}");
-    assert!((all.roll_rad - nominal.roll_rad).abs() < 1e-4);
-    let right = overlay(
-        "[[effect]]\nname = \"soft-tyres\"\nscope = \"right\"\nstiffness_n_m = 4e5\ndamping_n_s_m = 1e4",
-    );
-    let right = *drive(&machine, &right, &Terrain::Flat, 3.0).last().unwrap();
-    assert!(right.roll_rad.to_degrees() < -1.0, "the right side sinks: {}", right.roll_rad);
-}
-
 /// From the neutral stiffness down nothing jumps: the first step away from it changes next to nothing,
 /// also where a machine without the effect ends.
 #[test]
@@ -121,43 +86,6 @@ fn any_stiffness_drives_calmly() {
             .map(|w| w[1].front_specific_force_m_s2[2] - w[0].front_specific_force_m_s2[2]));
         assert!(shake < 0.1, "{k}: {shake} m/s2 from step to step");
     }
-}
-
-#[test]
-fn slip_lets_wheels_turn_faster_than_the_machine_travels() {
-    let machine = Machine::xt28();
-    let slippery = overlay("[[effect]]\nname = \"slippery-ground\"\nslip = 0.1");
-    for effects in [Effects::default(), slippery.clone()] {
-        let states = drive(&machine, &effects, &Terrain::Flat, 9.0);
-        let (a, b) = (&states[1200], states.last().unwrap());
-        let rolled_m: f64 = states[1200..].iter().map(|s| s.wheel_speed_rad_s.mean()).sum::<f64>()
-            * machine.wheels.radius_m
-            * STEP.as_secs_f64();
-        let slip = 1.0 - (b.position_m[0] - a.position_m[0]) / rolled_m;
-        let wanted = effects.wheels[Wheel::Fr].slippery_ground.slip;
-        assert!((slip - wanted).abs() < 0.01, "{slip}, not {wanted}");
-    }
-    // Standing, nothing slips: strokes and attitude are the nominal machine's.
-    let stand = |effects: &Effects| *drive(&machine, effects, &Terrain::Flat, 2.9).last().unwrap();
-    let (nominal, other) = (stand(&Effects::default()), stand(&slippery));
-    assert!((nominal.pitch_rad - other.pitch_rad).abs() < 1e-5);
-    assert!(nominal.stroke_m.0.iter().zip(other.stroke_m.0).all(|(a, b)| (a - b).abs() < 1e-5));
-}
-
-/// Ice carries the machine as the road does, but does not start it as fast.
-#[test]
-fn low_friction_spins_the_wheels_at_a_throttle_step() {
-    let machine = Machine::xt28();
-    let ice = overlay("[[effect]]\nname = \"slippery-ground\"\nfriction_factor = 0.05");
-    let at = |effects: &Effects| {
-        let states = drive(&machine, effects, &Terrain::Flat, 4.5);
-        let spin = |s: &VehicleState| {
-            s.wheel_speed_rad_s.mean() * machine.wheels.radius_m - s.antenna_velocity_m_s[0]
-        };
-        states[600..].iter().map(spin).fold(0.0_f64, f64::max)
-    };
-    let (road, ice) = (at(&Effects::default()), at(&ice));
-    assert!(ice > road + 0.1, "wheels spin by {ice} m/s on ice, {road} m/s on the road");
 }
 
 #[test]

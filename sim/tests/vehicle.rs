@@ -1,13 +1,7 @@
-//! The whole vehicle against statics, kinematics and its own blocks stepped alone.
-
-use std::path::Path;
+//! The whole vehicle against statics and kinematics, and against itself.
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::effects::Overlay;
-use xt28_sim::{
-    Actuation, Bodies, Drive, DriveInput, Effects, HingeMotion, Loads, Motion, Parts, Plant, Ramp,
-    RapierBodies, STEP, Steering, SteeringInput, Terrain, Vehicle, VehicleState,
-};
+use xt28_sim::{Actuation, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
 
 fn idle() -> Actuation {
     Actuation::idle(1200.0)
@@ -138,96 +132,6 @@ fn twice_the_same_is_the_same_to_the_bit() {
         *vehicle.state()
     };
     assert_eq!(once(), once());
-}
-
-/// The reference solver, and what it was last loaded with.
-#[derive(Clone)]
-struct Overheard {
-    bodies: RapierBodies,
-    loads: Loads,
-}
-
-impl Bodies for Overheard {
-    fn new(parts: &Parts, terrain: &Terrain, stroke_m: PerWheel<f64>) -> Self {
-        Self { bodies: Bodies::new(parts, terrain, stroke_m), loads: Loads::default() }
-    }
-
-    fn motion(&self) -> Motion {
-        self.bodies.motion()
-    }
-
-    fn held_at_most_s(inertia_kg_m2: f64, slope_nms: f64) -> f64 {
-        RapierBodies::held_at_most_s(inertia_kg_m2, slope_nms)
-    }
-
-    fn advance(&mut self, loads: &Loads, dt_s: f64) {
-        self.loads = *loads;
-        self.bodies.advance(loads, dt_s);
-    }
-}
-
-/// Blocks alone, fed with the vehicle's own signals, must say what the vehicle said: here joints and
-/// drive. Tolerance: none, to the bit, since nothing between them and the bodies is hidden.
-#[test]
-fn blocks_alone_reproduce_the_whole() {
-    reproduced(&Effects::default());
-}
-
-/// The same of blocks with effects, each of which has a memory or a law of its own.
-#[test]
-fn blocks_with_effects_alone_reproduce_the_whole() {
-    let text = |name: &str, values: &str| format!("[[effect]]\nname = \"{name}\"\n{values}\n");
-    let late = text("steer-delay", "delay_s = 0.1") + &text("throttle-delay", "delay_s = 0.2");
-    let slow = text("steer-lag", "time_constant_s = 0.2")
-        + &text("steer-rate", "factor = 0.7")
-        + &text("drive-lag", "time_constant_s = 0.3");
-    let loose = text("steer-backlash", "width_rad = 0.03")
-        + &text("engine-droop", "droop_per_w = 2e-6\npower_factor = 0.4");
-    for text in [late, slow, loose] {
-        let effects =
-            Overlay::parse(&text, Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap();
-        assert_ne!(effects, Effects::default());
-        reproduced(&effects);
-    }
-}
-
-fn reproduced(effects: &Effects) {
-    let (machine, strokes) = (Machine::xt28(), PerWheel::splat(0.17));
-    let mut vehicle: Vehicle<Overheard> =
-        Vehicle::with(&machine, effects, &Terrain::Flat, strokes, STEP);
-    let steering = Steering::new(&machine, &effects.steering);
-    let drive = Drive::new(&machine, effects);
-    let dt_s = STEP.as_secs_f64();
-    let (mut joints, mut shaft) = ([(); 2].map(|()| steering.straight(dt_s)), drive.at_rest(dt_s));
-    for step in 0..2000 {
-        let t = f64::from(step) * dt_s;
-        let actuation = Actuation {
-            arm_opening: PerWheel::from_fn(|w| 0.3 * (t * (1.0 + w.index() as f64 * 0.1)).sin()),
-            steer_opening: [(t * 0.7).sin(), 0.5 * (t * 0.7).sin()],
-            pump_displacement: [(t / 4.0).min(1.0); 2],
-            ..idle()
-        };
-        let before = *vehicle.state();
-        vehicle.step(&actuation);
-        let (after, loads) = (vehicle.state(), &vehicle.bodies().loads);
-        for (i, joint) in joints.iter_mut().enumerate() {
-            let (angle_rad, rate_rad_s) = (before.joint_rad[i], before.joint_rate_rad_s[i]);
-            let opening = actuation.steer_opening[i];
-            steering.step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
-            let spring = steering.spring(joint, HingeMotion { angle_rad, rate_rad_s });
-            assert_eq!(spring, loads.joint[i]);
-        }
-        let input = DriveInput {
-            pump_displacement: actuation.pump_displacement,
-            motor_displacement: actuation.motor_displacement,
-            engine_speed_rpm: actuation.engine_speed_rpm,
-            wheel_speed_rad_s: before.wheel_speed_rad_s,
-        };
-        let out = drive.step(&mut shaft, &input, dt_s);
-        assert_eq!(out.wheel_torque_nm, loads.drive_nm);
-        assert_eq!(out.wheel_torque_nm, after.wheel_torque_nm);
-        assert_eq!(out.pump_pressure_pa, after.pump_pressure_pa);
-    }
 }
 
 /// A stander's sag says what a tyre's stiffness is.

@@ -32,11 +32,17 @@ pub(super) struct Rim {
     pub(super) drive_nm: f64,
 }
 
-/// How a wheel's tread met the ground: what the tyre's block was fed, in the ground's axes.
+/// How a wheel's tread met the ground: what the tyre's block was fed and what came of it, in the ground's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tread {
     /// The axle, to the left. Forward along the ground is the axle crossed with a patch's normal.
     pub axle: [f64; 3],
+    /// The wheel's centre, m.
+    pub centre_m: [f64; 3],
+    /// What the ground then pushed the wheel with, N.
+    pub force_n: [f64; 3],
+    /// And turned it with about its centre, rolling resistance among it, Nm.
+    pub torque_nm: [f64; 3],
     inputs: [PatchInput; PATCHES_MAX],
     count: usize,
 }
@@ -48,9 +54,13 @@ impl Tread {
         &self.inputs[..self.count]
     }
 
-    fn new(axle: Vector, met: &[Patch]) -> Self {
-        let mut tread =
-            Self { axle: axle.to_array().map(f64::from), count: met.len(), ..Self::default() };
+    fn new(rim: &Rim, met: &[Patch]) -> Self {
+        let mut tread = Self {
+            axle: wide(rim.axle),
+            centre_m: wide(rim.centre),
+            count: met.len(),
+            ..Self::default()
+        };
         for (input, patch) in tread.inputs.iter_mut().zip(met) {
             *input = patch.input;
         }
@@ -99,9 +109,9 @@ impl TyreContact {
         drag: &RollingDrag,
         dt_s: f64,
     ) -> [Vector; 2] {
-        let minima = terrain.nearest(rim.centre.to_array().map(f64::from), self.radius_m);
+        let minima = terrain.nearest(wide(rim.centre), self.radius_m);
         let met: Vec<Patch> = minima.points().iter().map(|near| self.meet(rim, near)).collect();
-        self.tread = Tread::new(rim.axle, &met);
+        self.tread = Tread::new(rim, &met);
         self.patches = self.tyre.step(self.patches.states(), self.tread.patches(), dt_s);
         let [mut force, mut torque] = [Vector::ZERO; 2];
         for (patch, state) in met.iter().zip(self.patches.states()) {
@@ -113,7 +123,9 @@ impl TyreContact {
         }
         let turning_nm = rim.drive_nm + f64::from(torque.dot(rim.axle));
         let drag_nm = self.rolling.step(drag, rim.rate_rad_s, turning_nm, dt_s);
-        [force, torque + rim.axle * narrow(drag_nm)]
+        torque += rim.axle * narrow(drag_nm);
+        (self.tread.force_n, self.tread.torque_nm) = (wide(force), wide(torque));
+        [force, torque]
     }
 
     fn meet(&self, rim: &Rim, nearest: &Nearest) -> Patch {
@@ -131,7 +143,7 @@ impl TyreContact {
         let slip_m_s =
             [f64::from(tread.dot(forward)) + self.slip * rolling_m_s, f64::from(tread.dot(left))];
         let input = PatchInput {
-            normal: normal.to_array().map(f64::from),
+            normal: wide(normal),
             depth_m,
             depth_rate_m_s: -f64::from(velocity.dot(normal)),
             slip_m_s,
@@ -149,6 +161,10 @@ struct Patch {
     forward: Vector,
     left: Vector,
     input: PatchInput,
+}
+
+fn wide(v: Vector) -> [f64; 3] {
+    v.to_array().map(f64::from)
 }
 
 #[allow(clippy::cast_possible_truncation)]

@@ -7,7 +7,7 @@ mod tyre_rig;
 
 use core::time::Duration;
 
-use mass_rig::{Sum, V3, cross, length, plus, sum};
+use mass_rig::{Sum, V3, cross, plus, sum};
 use overheard::Overheard;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::{ComShift, MassEffects, Payload};
@@ -214,4 +214,8 @@ fn drives(machine: &Machine, effects: &Effects, terrain: &Terrain) -> [[f64; 2];
         }
     }
     [worst, most]
+}
+
+fn length(a: V3) -> f64 {
+    a.iter().map(|c| c * c).sum::<f64>().sqrt()
 }

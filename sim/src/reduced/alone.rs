@@ -1,5 +1,7 @@
 //! Tyres and masses of the fast core alone, driven by the whole vehicle's own signals.
 
+#[path = "../../tests/mass_rig/mod.rs"]
+mod mass_rig;
 #[path = "../../tests/tyre_rig/mod.rs"]
 mod tyre_rig;
 
@@ -8,12 +10,11 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 
 use super::ReducedBodies;
 use super::contact::Body;
-use super::pose::{Generalized, Pose, State};
+use super::pose::{Generalized, Pose, State, WHEELS};
 use super::spatial::{angular, linear};
-use super::tests::momenta;
 use super::touch::{Search, patch};
 use super::tree::Tree;
-use crate::{Actuation, Effects, Parts, Plant, STEP, Terrain, Vehicle};
+use crate::{Actuation, Effects, Parts, Plant, STEP, Terrain, Vehicle, VehicleState};
 
 /// The machines of the tyres' rig, the soft one with a load.
 fn machines() -> [(Machine, Effects); 2] {
@@ -23,11 +24,11 @@ fn machines() -> [(Machine, Effects); 2] {
     [nominal, soft]
 }
 
-/// Drives for 10 s in bends with all arms moving; `see` gets the state before and the bodies after each step.
+/// Drives for 10 s in bends with all arms moving; `see` gets the bodies' state before and the vehicle after each step.
 fn drive(
     (machine, effects): &(Machine, Effects),
     terrain: &Terrain,
-    mut see: impl FnMut(&State, &ReducedBodies),
+    mut see: impl FnMut(&State, &Vehicle<ReducedBodies>),
 ) {
     let strokes_m = PerWheel::splat(0.17);
     let mut vehicle: Vehicle<ReducedBodies> =
@@ -41,7 +42,7 @@ fn drive(
             pump_displacement: [(t / 2.0).min(1.0); 2],
             ..Actuation::idle(1200.0)
         });
-        see(&before, vehicle.bodies());
+        see(&before, &vehicle);
     }
 }
 
@@ -56,8 +57,8 @@ pub(super) fn ended(after: &State, dt_s: f64) -> Generalized {
 }
 
 /// Fed with where each wheel is when a step begins and how it moves when it ends, and with bristles of their own,
-/// the tyres alone say the vehicle's ground force at every step, and where its bristles are. Tolerance: 1e-6 N of some
-/// 40 kN and 1e-12 m, the rounding of contacts that are stiff against creep; nothing is hidden between them.
+/// the tyres alone say the vehicle's ground force in all three directions and its moment at every step, and where its
+/// bristles are. Tolerance: 1e-6 N of some 40 kN, 1e-5 Nm about the front axle and 1e-12 m, the rounding of contacts that are stiff against creep; nothing is hidden between them.
 #[test]
 fn tyres_alone_reproduce_the_whole() {
     let dt_s = STEP.as_secs_f64();
@@ -66,8 +67,10 @@ fn tyres_alone_reproduce_the_whole() {
             let tree = Tree::new(&Parts::new(&made.0, &made.1));
             let mut search = Search::new(terrain.clone());
             let (mut bristle_m, mut contacts) = ([[0.0; 2]; 6], Vec::new());
-            let (mut worst_n, mut worst_m) = (0.0_f64, 0.0_f64);
-            drive(made, &terrain, |before, bodies| {
+            let (mut worst_n, mut worst_nm, mut worst_m) = (0.0_f64, 0.0_f64, 0.0_f64);
+            let mut along_n = 0.0_f64;
+            drive(made, &terrain, |before, vehicle| {
+                let bodies = vehicle.bodies();
                 let state = State { bristle_m, ..before.clone() };
                 let (pose, rate) = (Pose::new(&tree, &state), ended(&bodies.state, dt_s));
                 search.contacts((&tree, &pose, &state), dt_s, &mut contacts);
@@ -76,52 +79,85 @@ fn tyres_alone_reproduce_the_whole() {
                     let i = wheel.index();
                     let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &rate);
                     let twist = pose.wheel_twist(i, &arm, &rate);
-                    let mut up_n = 0.0;
-                    for contact in contacts.iter_mut().filter(|c| c.body == Body::Wheel(i)) {
-                        contact.guess(&twist);
-                        up_n += contact.impulse().z / dt_s;
-                    }
+                    let own = contacts.iter_mut().filter(|c| c.body == Body::Wheel(i));
+                    own.for_each(|contact| contact.guess(&twist));
+                    let [ours, theirs] = [&contacts, &bodies.contacts].map(|contacts| {
+                        let own = contacts.iter().filter(|c| c.body == Body::Wheel(i));
+                        own.fold([DVec3::ZERO; 2], |[push, turn], c| {
+                            [push + c.impulse() / dt_s, turn + c.moment() / dt_s]
+                        })
+                    });
                     let own = contacts.iter().filter(|c| c.body == Body::Wheel(i));
                     bristle_m[i] = patch(&tree, i, (&pose, &state), dt_s).end_m(own);
-                    worst_n = worst_n.max((up_n - bodies.ground_force_n[wheel]).abs());
+                    let up_n = ours[0].z - bodies.ground_force_n[wheel];
+                    worst_n = worst_n.max(up_n.abs()).max((ours[0] - theirs[0]).length());
+                    worst_nm = worst_nm.max((ours[1] - theirs[1]).length());
+                    along_n = along_n.max(ours[0].x.hypot(ours[0].y));
                     for (ours_m, m) in bristle_m[i].iter().zip(bodies.state.bristle_m[i]) {
                         worst_m = worst_m.max((ours_m - m).abs());
                     }
                 }
             });
-            assert!(worst_n < 1e-6, "{worst_n} N");
+            assert!(along_n > 3e3, "pushed along by {along_n} N");
+            assert!(worst_n < 1e-6 && worst_nm < 1e-5, "{worst_n} N, {worst_nm} Nm");
             assert!(worst_m < 1e-12, "{worst_m} m");
         }
     }
 }
 
-/// Linear momentum of all bodies in this state, kg m/s.
-fn momentum(tree: &Tree, state: &State) -> DVec3 {
-    momenta(tree, state, &state.rate).iter().map(|(_, momentum)| linear(momentum)).sum()
-}
-
-/// Fed with what the ground pushes with, the masses that the machine file and the effects name gain, alone and over
-/// 10 s, the momentum that the vehicle's motion shows. Tolerance: 1 mm/s of the whole machine, of the 100 m/s that its weight
-/// would make in that time: arms and frames turn on within a step.
+/// Fed with what the ground pushes and turns it with, the masses that the machine file and the effects name, alone and
+/// over 10 s, gain the momentum and the angular momentum about a place in the world that the vehicle's signals show.
+/// Tolerance: 1 mm/s and 0.01 m2/s of the whole machine, which weight alone would take to 100 m/s and some 300 m2/s in that
+/// time: arms and frames turn on within a step.
 #[test]
 fn masses_alone_reproduce_the_whole() {
     let dt_s = STEP.as_secs_f64();
     for terrain in [Terrain::Flat, tyre_rig::rough()] {
         for made in &machines() {
             let tree = Tree::new(&Parts::new(&made.0, &made.1));
-            let weight_n = GRAVITY_M_S2 * (made.0.mass_kg() + made.1.masses.payload.mass_kg);
-            let mut gained: Option<DVec3> = None;
-            let (mut worst, mut most) = (0.0_f64, 0.0_f64);
-            drive(made, &terrain, |before, bodies| {
-                let own = gained.get_or_insert_with(|| momentum(&tree, before));
-                *own += bodies.contacts.iter().map(|c| c.impulse()).sum::<DVec3>();
-                own.z -= weight_n * dt_s;
-                let seen = momentum(&tree, &bodies.state);
-                worst = worst.max((*own - seen).length());
-                most = most.max(seen.length());
+            let of = |s: &VehicleState| mass_rig::sum(&made.0, &made.1.masses, s);
+            let mut last: Option<(mass_rig::Sum, [DVec3; 2], PerWheel<f64>)> = None;
+            let (mut worst, mut most) = ([0.0_f64; 2], [0.0_f64; 2]);
+            drive(made, &terrain, |before, vehicle| {
+                let (s, bodies) = (vehicle.state(), vehicle.bodies());
+                let seen = of(s);
+                let now = [seen.momentum, seen.angular].map(DVec3::from);
+                if let Some((sum, own, loads_n)) = &mut last {
+                    let pushed: DVec3 = bodies.contacts.iter().map(|c| c.impulse()).sum();
+                    let turned: DVec3 = bodies.contacts.iter().map(|c| c.moment()).sum();
+                    let weight = DVec3::new(0.0, 0.0, -GRAVITY_M_S2 * dt_s);
+                    own[0] += pushed + weight * sum.mass_kg;
+                    own[1] += turned + before.position.cross(pushed);
+                    own[1] += DVec3::from(sum.first_kg_m).cross(weight);
+                    own[1] += drag_nms(&made.0, (&tree, before), bodies, loads_n);
+                    for i in 0..2 {
+                        worst[i] = worst[i].max((own[i] - now[i]).length() / sum.mass_kg);
+                        most[i] = most[i].max(now[i].length() / sum.mass_kg);
+                    }
+                }
+                let own = last.map_or(now, |(_, own, _)| own);
+                last = Some((seen, own, s.ground_force_n));
             });
-            assert!(most > 5e3, "it moves with {most} kg m/s");
-            assert!(worst < 1e-3 * tree.mass_kg, "{worst} kg m/s");
+            assert!(most[0] > 0.3 && most[1] > 0.3, "it moves with {most:?} m/s, m2/s");
+            assert!(worst[0] < 1e-3 && worst[1] < 0.01, "{worst:?} m/s, m2/s of {most:?}");
         }
     }
+}
+
+/// What rolling resistance, which acts from the ground on the wheels alone, turned the machine with over the last step.
+fn drag_nms(
+    machine: &Machine,
+    (tree, before): (&Tree, &State),
+    bodies: &ReducedBodies,
+    loads_n: &PerWheel<f64>,
+) -> DVec3 {
+    let pose = Pose::new(tree, before);
+    let w = &machine.wheels;
+    let each = Wheel::ALL.map(|wheel| {
+        let i = wheel.index();
+        let most_nm = w.rolling_resistance * w.radius_m * loads_n[wheel];
+        let drag_nm = most_nm * (bodies.state.rate[WHEELS + i] / 0.05).tanh();
+        pose.arm[i].axle * (-drag_nm * STEP.as_secs_f64())
+    });
+    each.into_iter().sum()
 }

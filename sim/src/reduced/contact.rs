@@ -275,6 +275,13 @@ impl Contact {
         let ([out, one, two], [n, a, b]) = (self.axes, self.now.impulse);
         out * n + one * a + two * b
     }
+
+    /// Its moment about the front frame's origin, N m s.
+    #[cfg(test)]
+    pub(super) fn moment(&self) -> DVec3 {
+        let each = self.wrench.iter().zip(self.now.impulse);
+        each.map(|(wrench, impulse)| super::spatial::angular(wrench) * impulse).sum()
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Tyres under the whole vehicle: nominal, softened, slippery, brush.
+//! Tyres under the whole vehicle: softened without a jump, calm at any stiffness, brush, rolling on soft ground.
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, TyreModel, Wheel};
 use xt28_sim::effects::{Overlay, SoftTyre};

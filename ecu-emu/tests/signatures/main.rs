@@ -31,6 +31,10 @@ fn every_effect_beside_the_plant_has_a_row() {
         let own: Vec<&Row> = rows.iter().filter(|row| row.effect == effect.name).collect();
         assert!(!own.is_empty(), "{} has no row", effect.name);
         assert!(own.iter().all(|row| !row.stays.is_empty()), "{} leaves nothing", effect.name);
+        for p in effect.parameters {
+            let set = own.iter().any(|row| row.values.contains(p.name));
+            assert!(set, "no row sets {} of {}", p.name, effect.name);
+        }
     }
     for row in &rows {
         assert!(CATALOGUE.iter().any(|effect| effect.name == row.effect), "{}", row.effect);

@@ -1,9 +1,9 @@
 //! Rows of the arms' hydraulics: what the oil does for a command, and what the cylinder makes of it.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Wheel};
 use xt28_sim::{STEP, VehicleState};
 
-use crate::row::{Row, Seen, Signal, Size, Stay, Values, joints_rad, strokes_m, wheels};
+use crate::row::{MACHINE, Row, Seen, Signal, Size, Stay, Values, joints_rad, strokes_m, wheels};
 use crate::scene::{OPENS_S, STROKE_M, Scene, step_at};
 
 /// Speed of a cylinder whose valve is fully open, m/s.
@@ -29,7 +29,7 @@ const OTHERS: Signal = |s| wheels("middle").chain(wheels("BR")).map(|w| oil_m(s,
 
 /// Stroke at which the oil of a nominal cylinder would make no force, m.
 fn oil_m(s: &VehicleState, wheel: Wheel) -> f64 {
-    let h = Machine::xt28().hydraulics;
+    let h = &MACHINE.hydraulics;
     let spring_n = s.cylinder_force_n[wheel] + h.lock_damping_n_s_m * s.stroke_rate_m_s[wheel];
     s.stroke_m[wheel] + spring_n / h.lock_stiffness_n_m
 }
@@ -152,13 +152,13 @@ pub(crate) fn rows() -> Vec<Row> {
 
 /// Load of a cylinder at `stroke_m` that carries a sixth of the machine, N.
 fn weight_n(stroke_m: f64) -> f64 {
-    let machine = Machine::xt28();
+    let machine = &*MACHINE;
     machine.mass_kg() * GRAVITY_M_S2 / 6.0 / machine.linkage().at_stroke(stroke_m).force_ratio
 }
 
 /// What the wheel that hangs on it draws a cylinder with, N.
 fn hanging_n() -> f64 {
-    let machine = Machine::xt28();
+    let machine = &*MACHINE;
     let hanging_kg =
         machine.masses.wheel_kg + machine.masses.arm_kg * machine.vehicle.arm_com_share;
     hanging_kg * GRAVITY_M_S2 / machine.linkage().at_stroke(0.25).force_ratio
@@ -168,7 +168,7 @@ fn hanging_n() -> f64 {
 fn load_dependent(seen: &Seen) -> Vec<Size> {
     let speed_m_s = |opening: f64| {
         move |s: &VehicleState, w: Wheel| {
-            let load_pa = s.cylinder_force_n[w] / Machine::xt28().arms.area_bore_m2;
+            let load_pa = s.cylinder_force_n[w] / MACHINE.arms.area_bore_m2;
             let lost = 0.02 * (load_pa - 2e6) / 8e5;
             let drop = if opening < 0.0 { 1.0 + 1.5 * lost } else { 1.0 - lost };
             opening * FULL_M_S * drop.sqrt()
@@ -239,13 +239,17 @@ fn seals(scene: Scene, shows: fn(&Seen) -> Vec<Size>) -> Row {
     Row {
         shows: Some(shows),
         stays: &[Stay::Within("joints", joints_rad, [0.0, 6.0], 1e-3)],
-        ..Row::new("seal-stiction", &[("coulomb_n", 3000.0), ("stribeck_n", 2000.0)], scene)
+        ..Row::new(
+            "seal-stiction",
+            &[("coulomb_n", 3000.0), ("stribeck_n", 2000.0), ("stribeck_speed_m_s", 0.008)],
+            scene,
+        )
     }
 }
 
 /// The oil bears what the seals drag at this speed beside the load, whose mean is what it was.
 fn loop_n(seen: &Seen, between_s: [f64; 2], opening: f64) -> Vec<Size> {
-    let fade = opening * FULL_M_S / 0.01;
+    let fade = opening * FULL_M_S / 0.008;
     let wanted_n = (3000.0 + 2000.0 * (-fade * fade).exp()).copysign(opening);
     let [without, with] = seen.means(between_s, |s| s.cylinder_force_n.mean());
     vec![Size::new("oil's force, N", with - without, wanted_n, 150.0)]

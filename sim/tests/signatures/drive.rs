@@ -1,10 +1,10 @@
 //! Rows of engine, circuits and rolling, on the wheels of a machine that starts from rest.
 
-use xt28_machine::{Axle, GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{Axle, GRAVITY_M_S2, Wheel};
 use xt28_sim::{STEP, VehicleState};
 
 use crate::row::{
-    Row, Seen, Signal, Size, Stay, Values, joints_rad, mean_speed_rad_s, strokes_m, wheels,
+    MACHINE, Row, Seen, Signal, Size, Stay, Values, joints_rad, mean_speed_rad_s, strokes_m, wheels,
 };
 use crate::scene::{OPENS_S, Scene};
 
@@ -20,7 +20,7 @@ const SAME_SPEED: Stay = Stay::Within("speed in the end", mean_speed_rad_s, [9.5
 
 /// Speed that the pumps ask for at this displacement, m/s.
 fn asked_m_s(pump: f64) -> f64 {
-    Machine::xt28().drive.speed_full_m_s / 3.0 * pump
+    MACHINE.drive.speed_full_m_s / 3.0 * pump
 }
 
 /// How far the mean wheel has rolled less than the nominal one: what is late by a time, or lags by a constant, is so
@@ -103,7 +103,7 @@ const DRAG_FADE_RAD_S: f64 = 0.05;
 /// While front and rear arms swing, their wheels slide in their brakes. The ground then pushes each as hard as turns it
 /// evenly against motor, brake and rolling resistance, on the lever of the pivot's height, and the cylinders weigh it.
 fn pinch(seen: &Seen) -> Vec<Size> {
-    let (m, between_s) = (&seen.machine, [2.6, 2.95]);
+    let (m, between_s) = (seen.machine, [2.6, 2.95]);
     let own_kg = m.masses.wheel_kg + m.masses.arm_kg * m.vehicle.arm_com_share;
     let false_n = |s: &VehicleState, w: Wheel| {
         let ratio = m.linkage().at_stroke(s.stroke_m[w]).force_ratio;
@@ -149,7 +149,7 @@ fn droop(seen: &Seen) -> Vec<Size> {
         let wanted_rpm = 1200.0 * (1.0 - DROOP_PER_W * felt_w.max(0.0)).max(0.5);
         worst_rpm = worst_rpm.max((pair[1].engine_speed_rpm - wanted_rpm).abs());
     }
-    let m = &seen.machine;
+    let m = seen.machine;
     let [_, speed_rad_s] = seen.means([8.0, 10.0], |s| s.wheel_speed_rad_s.mean());
     // v = asked (1 - droop c m g v).
     let drag_n = m.wheels.rolling_resistance * m.mass_kg() * GRAVITY_M_S2;
@@ -163,7 +163,7 @@ fn droop(seen: &Seen) -> Vec<Size> {
 
 /// What power there is goes into rolling resistance: v = P / (c m g), and all of it is used.
 fn short_of_power(seen: &Seen) -> Vec<Size> {
-    let m = &seen.machine;
+    let m = seen.machine;
     let most_w = 0.008 * m.drive.engine_power_w;
     let range = Seen::steps([7.0, 10.0]);
     let used_w = range.clone().map(|i| power_w(&seen.with[i - 1], &seen.with[i])).sum::<f64>()

@@ -3,7 +3,7 @@
 use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::{Effects, Parts, VehicleState};
 
-use crate::row::{Row, Seen, Signal, Size, Stay, Values, joints_rad};
+use crate::row::{MACHINE, Row, Seen, Signal, Size, Stay, Values, joints_rad};
 use crate::scene::Scene;
 
 /// The ground rises forward by so much, rad, where height counts.
@@ -16,7 +16,7 @@ const RESTS_S: [f64; 2] = [9.0, 10.0];
 const OF_MASSES: &[Stay] =
     &[Stay::Within("oil", OIL, RESTS_S, 5e-6), Stay::Within("joints", joints_rad, RESTS_S, 1e-3)];
 const OIL: Signal = |s| {
-    let h = Machine::xt28().hydraulics;
+    let h = &MACHINE.hydraulics;
     let oil_m = |w: Wheel| s.stroke_m[w] + s.cylinder_force_n[w] / h.lock_stiffness_n_m;
     Wheel::ALL.map(oil_m).to_vec()
 };
@@ -85,9 +85,9 @@ fn on_ground(s: &VehicleState, [x, y, z]: [f64; 3]) -> [f64; 3] {
 /// The ground carries the machine's weight, and the moments of the wheels' loads are those of the masses, with these
 /// more, kg and kg m: square to the ground its part of the weight, down the slope the other at the masses' height.
 fn carries(seen: &Seen, more_kg: f64, more_kg_m: [f64; 3]) -> Vec<Size> {
-    let parts = Parts::new(&seen.machine, &Effects::default());
+    let parts = Parts::new(seen.machine, &Effects::default());
     let s = &seen.with[seen.with.len() - 1];
-    let (mass_kg, first_kg_m) = empty(&seen.machine, &parts, s);
+    let (mass_kg, first_kg_m) = empty(seen.machine, &parts, s);
     let mass_kg = mass_kg + more_kg;
     let [x, y, z] = on_ground(s, core::array::from_fn(|k| first_kg_m[k] + more_kg_m[k]));
     let (sin, cos) = GRADE_RAD.sin_cos();

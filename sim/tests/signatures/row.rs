@@ -1,12 +1,17 @@
 //! A row of the table: an effect in force, what it must show, what must stay.
 
 use core::ops::Range;
+use std::rc::Rc;
+use std::sync::LazyLock;
 
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::{Scope, find};
 use xt28_sim::{Bodies, Effects, STEP, VehicleState};
 
 use crate::scene::{Scene, step_at};
+
+/// The nominal machine, read once.
+pub(crate) static MACHINE: LazyLock<Machine> = LazyLock::new(Machine::xt28);
 
 /// Some numbers of a state.
 pub(crate) type Signal = fn(&VehicleState) -> Vec<f64>;
@@ -50,9 +55,9 @@ pub(crate) enum Stay {
 
 /// What the two machines did, with the effect and without.
 pub(crate) struct Seen {
-    pub(crate) machine: Machine,
-    pub(crate) without: Vec<VehicleState>,
-    pub(crate) with: Vec<VehicleState>,
+    pub(crate) machine: &'static Machine,
+    pub(crate) without: Rc<Vec<VehicleState>>,
+    pub(crate) with: Rc<Vec<VehicleState>>,
 }
 
 impl Seen {
@@ -118,11 +123,12 @@ impl Row {
     }
 
     /// What is not as the row has it.
-    pub(crate) fn off<B: Bodies>(&self) -> Vec<String> {
-        let both = self.effects();
-        let states = |scene: Scene| both.each_ref().map(|effects| scene.states::<B>(effects));
+    pub(crate) fn off<B: Bodies>(&self, runs: &mut Runs) -> Vec<String> {
+        let [without, with] = self.effects();
+        let mut states =
+            |scene: Scene| [runs.states::<B>(scene, &without), Rc::new(scene.states::<B>(&with))];
         let [without, with] = states(self.scene);
-        let seen = Seen { machine: Machine::xt28(), without, with };
+        let seen = Seen { machine: &MACHINE, without, with };
         let sizes = self.shows.map(|shows| shows(&seen)).unwrap_or_default();
         let mut off: Vec<String> = sizes.iter().filter_map(Size::off).collect();
         for stay in self.stays {
@@ -137,7 +143,7 @@ impl Row {
                     off.extend(differs.then(|| format!("shows before {t_s} s")));
                 }
                 Stay::AllButAntenna(scene) => {
-                    let [without, with] = states(scene).map(|states| states.map_antenna_away());
+                    let [without, with] = states(scene).map(|states| without_antenna(&states));
                     off.extend((without != with).then(|| format!("shows in {scene:?}")));
                 }
                 Stay::Within(what, signal, between_s, bound) => {
@@ -158,15 +164,27 @@ fn set(effects: &mut Effects, name: &str, scope: Scope, values: Values) {
 }
 
 /// States of which the antenna's own are not looked at.
-trait AntennaAway {
-    fn map_antenna_away(self) -> Self;
+fn without_antenna(states: &[VehicleState]) -> Vec<VehicleState> {
+    let (antenna_position_m, antenna_velocity_m_s) = ([0.0; 3], [0.0; 3]);
+    let away = |s: &VehicleState| VehicleState { antenna_position_m, antenna_velocity_m_s, ..*s };
+    states.iter().map(away).collect()
 }
 
-impl AntennaAway for Vec<VehicleState> {
-    fn map_antenna_away(self) -> Self {
-        let (antenna_position_m, antenna_velocity_m_s) = ([0.0; 3], [0.0; 3]);
-        let away = |s| VehicleState { antenna_position_m, antenna_velocity_m_s, ..s };
-        self.into_iter().map(away).collect()
+/// Runs of machines without a row's effect, each made once for all rows of a solver.
+#[derive(Default)]
+pub(crate) struct Runs {
+    made: Vec<(Scene, Effects, Rc<Vec<VehicleState>>)>,
+}
+
+impl Runs {
+    fn states<B: Bodies>(&mut self, scene: Scene, effects: &Effects) -> Rc<Vec<VehicleState>> {
+        let known = self.made.iter().find(|(of, by, _)| *of == scene && by == effects);
+        if let Some((.., states)) = known {
+            return Rc::clone(states);
+        }
+        let states = Rc::new(scene.states::<B>(effects));
+        self.made.push((scene, effects.clone(), Rc::clone(&states)));
+        states
     }
 }
 

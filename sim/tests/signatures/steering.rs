@@ -1,9 +1,8 @@
 //! Rows of the steering valves, on the angles of the joints of a machine that drives through a bend.
 
-use xt28_machine::Machine;
 use xt28_sim::STEP;
 
-use crate::row::{Row, Seen, Size, Stay, Values, mean_speed_rad_s, strokes_m};
+use crate::row::{MACHINE, Row, Seen, Size, Stay, Values, mean_speed_rad_s, strokes_m};
 use crate::scene::{Scene, TURNS_BY, TURNS_S, step_at};
 
 /// What the tyres scrub differs a little from place to place in the bend, rad, and more once the joints have come to rest.
@@ -21,7 +20,7 @@ const OF_JOINTS: &[Stay] = &[
 
 /// Rates that the valves ask of both joints, rad/s.
 fn rates_rad_s() -> [f64; 2] {
-    let full_rad_s = Machine::xt28().articulation.rate_max_deg_s.to_radians();
+    let full_rad_s = MACHINE.articulation.rate_max_deg_s.to_radians();
     TURNS_BY.map(|opening| opening * full_rad_s)
 }
 

@@ -1,9 +1,9 @@
 //! Rows of what is between wheel and ground: how deep wheels sink, what grip they have, how they slip.
 
-use xt28_machine::{GRAVITY_M_S2, Machine, Side, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Side, Wheel};
 use xt28_sim::{Effects, Parts, VehicleState};
 
-use crate::row::{Row, Seen, Signal, Size, Stay, joints_rad, mean_speed_rad_s, strokes_m};
+use crate::row::{MACHINE, Row, Seen, Signal, Size, Stay, joints_rad, mean_speed_rad_s, strokes_m};
 use crate::scene::{Scene, step_at};
 
 /// A machine that stands does not slip, and one that rolls rolls as fast as it is asked to.
@@ -79,7 +79,7 @@ fn sag_m(parts: &Parts, s: &VehicleState, wheel: Wheel) -> f64 {
 /// Every wheel sinks by its load over its tyre's stiffness: the right ones on soft tyres, the left ones on those that the
 /// machine file has.
 fn sinks(seen: &Seen) -> Vec<Size> {
-    let parts = Parts::new(&Machine::xt28(), &Effects::default());
+    let parts = Parts::new(&MACHINE, &Effects::default());
     let size = |w: Wheel| {
         let [_, sag_m] = seen.means([9.0, 10.0], |s| sag_m(&parts, s, w));
         let [_, load_n] = seen.means([9.0, 10.0], |s| s.ground_force_n[w]);

@@ -1,7 +1,7 @@
 //! Rows of what is between wheel and ground: how deep wheels sink, what grip they have, how they slip.
 
 use xt28_machine::{GRAVITY_M_S2, Side, Wheel};
-use xt28_sim::{Effects, Parts, VehicleState};
+use xt28_sim::{Effects, Parts, STEP, VehicleState};
 
 use crate::row::{MACHINE, Row, Seen, Signal, Size, Stay, joints_rad, mean_speed_rad_s, strokes_m};
 use crate::scene::{Scene, step_at};
@@ -28,7 +28,7 @@ pub(crate) fn rows() -> Vec<Row> {
     vec![
         Row {
             scope: "right",
-            shows: Some(sinks),
+            shows: Some(|seen| [sinks(seen), bounces(seen)].concat()),
             stays: &[Stay::Within(
                 "load of the machine",
                 |s| vec![s.ground_force_n.sum()],
@@ -88,6 +88,23 @@ fn sinks(seen: &Seen) -> Vec<Size> {
         Size::new(format!("sag of {w}, m"), sag_m, load_n / stiffness_n_m, 5e-5)
     };
     Wheel::ALL.into_iter().map(size).collect()
+}
+
+/// While the machine, just set down, bounces on them, soft tyres push with what their springs do not explain by how fast
+/// they are pressed in: damping by least squares.
+fn bounces(seen: &Seen) -> Vec<Size> {
+    let parts = Parts::new(&MACHINE, &Effects::default());
+    let size = |w: Wheel| {
+        let (mut product, mut square) = (0.0, 0.0);
+        for pair in seen.with[..step_at(1.5)].windows(2) {
+            let [before_m, sag_m] = [&pair[0], &pair[1]].map(|s| sag_m(&parts, s, w));
+            let rate_m_s = (sag_m - before_m) / STEP.as_secs_f64();
+            product += (pair[1].ground_force_n[w] - 4e5 * sag_m) * rate_m_s;
+            square += rate_m_s * rate_m_s;
+        }
+        Size::new(format!("damping of {w}, N s/m"), product / square, 2e4, 2e3)
+    };
+    Wheel::ALL.into_iter().filter(|w| w.side() == Side::Right).map(size).collect()
 }
 
 /// Rims are faster than the machine by this share of their speed and by this much besides, m/s, than nominal ones.

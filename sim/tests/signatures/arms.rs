@@ -79,6 +79,11 @@ fn valve(effect: &'static str, values: Values) -> Row {
 }
 
 pub(crate) fn rows() -> Vec<Row> {
+    [of_commands(), of_cylinders()].concat()
+}
+
+/// From command to flow.
+fn of_commands() -> Vec<Row> {
     vec![
         Row {
             shows: Some(|seen| behind(seen, 3.4, 0.2 * FULL_M_S * 0.2)),
@@ -124,6 +129,12 @@ pub(crate) fn rows() -> Vec<Row> {
             ],
             ..Row::new("pump-flow-limit", &[("flow_m3_s", 0.001)], Scene::Swings)
         },
+    ]
+}
+
+/// From flow to force.
+fn of_cylinders() -> Vec<Row> {
+    vec![
         Row {
             scope: "front",
             shows: Some(|seen| {

@@ -12,10 +12,6 @@ use xt28_sim::{
 type Signal = fn(&VehicleState) -> Vec<f64>;
 
 /// Onto a ramp with everything in motion: drive, both joints and all arms.
-fn trace(effects: &Effects, steps: u32) -> Vec<VehicleState> {
-    trace_of(&Machine::xt28(), effects, steps)
-}
-
 fn trace_of(machine: &Machine, effects: &Effects, steps: u32) -> Vec<VehicleState> {
     let ramp = Ramp { x_m: [0.3, 1.3, 3.0, 4.0], height_m: 0.2, y_min_m: -1.9, y_max_m: -0.5 };
     let strokes = PerWheel::splat(0.17);
@@ -65,51 +61,6 @@ fn severity_zero_leaves_every_value_nominal() {
             effects[0].name
         );
     }
-}
-
-/// All effects but one in force by their slots, without an overlay: a tenth of the way to their far ends.
-fn all_but(left_out: &Effect) -> Effects {
-    let mut effects = Effects::default();
-    for p in CATALOGUE.iter().filter(|effect| *effect != left_out).flat_map(|e| e.parameters) {
-        p.set(&mut effects, Scope::All, p.neutral + 0.1 * (far(p.range, p.neutral) - p.neutral));
-    }
-    effects
-}
-
-/// An effect that is listed at severity zero, before all others in force or after them, leaves the
-/// vehicle as the others alone have it, bit for bit: it puts nothing back to nominal that another one
-/// has set, and no law beside it takes another branch. Minus zero equals zero as a value, so that only
-/// driving tells.
-#[test]
-fn severity_zero_beside_all_others_leaves_them_to_the_bit() {
-    let bits = |effects: &Effects| -> Vec<Vec<u64>> {
-        let states = trace(effects, 60);
-        states.iter().map(|s| numbers(s).into_iter().map(f64::to_bits).collect()).collect()
-    };
-    let nominal = bits(&Effects::default());
-    for effect in CATALOGUE {
-        let others: Vec<&Effect> = CATALOGUE.iter().filter(|other| *other != effect).collect();
-        let (others, none) = (overlay(&others, 0.1), overlay(&[effect], 0.0));
-        let alone = bits(&all_but(effect));
-        assert_ne!(alone, nominal, "the others show");
-        for both in [[&none, &others], [&others, &none]] {
-            let listed = Overlay { entries: both.map(|o| o.entries.clone()).concat() };
-            let read = Overlay::parse(&listed.to_toml(), Path::new("o.toml")).unwrap();
-            assert!(
-                bits(&read.effects(&Machine::xt28()).unwrap()) == alone,
-                "{} at severity zero shows",
-                effect.name
-            );
-        }
-    }
-}
-
-/// What every sensor and every wheel feels.
-fn numbers(s: &VehicleState) -> Vec<f64> {
-    let wheels = [s.stroke_m, s.cylinder_force_n, s.ground_force_n, s.wheel_speed_rad_s];
-    let wheels = wheels.iter().flat_map(|wheels| wheels.0);
-    let places = [s.position_m, s.antenna_position_m, s.antenna_velocity_m_s, s.front_rate_rad_s];
-    wheels.chain(places.concat()).chain(s.joint_rad).chain([s.roll_rad, s.pitch_rad]).collect()
 }
 
 /// No effect sets in with a jump: at a millionth of its range the vehicle moves within the solver's

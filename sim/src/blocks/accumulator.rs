@@ -62,6 +62,15 @@ impl Accumulator {
         [gas_n - self.back_n + slope_n_m * beyond_m, slope_n_m]
     }
 
+    /// Compression at which oil begins to come in, m, and by how much the slope changes there, N/m: from the
+    /// oil's alone to that of oil and gas behind one another.
+    #[must_use]
+    pub(super) fn knee(&self) -> [f64; 2] {
+        let gas_n_m = self.exponent * self.precharge_n / self.gas_m;
+        let both_n_m = gas_n_m * OIL_STIFFNESS_N_M / (gas_n_m + OIL_STIFFNESS_N_M);
+        [self.filling_m, both_n_m - OIL_STIFFNESS_N_M]
+    }
+
     /// What the gas bears, N, and its own slope, N/m, while it and the oil give way by `compression_m`.
     ///
     /// By Newton's rule from where the gas would be without the oil: the misfit is convex in the length

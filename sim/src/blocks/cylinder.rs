@@ -114,8 +114,9 @@ impl Cylinder {
     /// and of the end stops beyond 0 and full.
     #[must_use]
     pub fn force(&self, state: CylinderState, motion: &CylinderMotion, dt_s: f64) -> CylinderForce {
-        let [spring_n, spring_n_m] = self.lock.spring(state.rest_m - motion.stroke_m);
         let rate_m_s = motion.stroke_rate_m_s;
+        let [spring_n, spring_n_m] =
+            self.lock.spring_along(state.rest_m - motion.stroke_m, -rate_m_s * dt_s);
         let [seal_n, seal_n_m] = self.stiction.ahead(state.friction_n, rate_m_s, dt_s);
         let mut out = CylinderForce {
             force_n: spring_n - self.damping_n_s_m * rate_m_s - seal_n,

@@ -3,6 +3,7 @@
 use xt28_machine::Machine;
 
 use super::Accumulator;
+use super::accumulator::OIL_STIFFNESS_N_M;
 use crate::effects::ArmEffects;
 
 /// Force of the oil against compression: how much further the valve has filled the cylinder than it
@@ -10,8 +11,17 @@ use crate::effects::ArmEffects;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lock {
     stiffness_n_m: f64,
-    gas: Option<(f64, Accumulator)>,
+    gas: Option<Gas>,
     reach_m: [f64; 2],
+}
+
+/// The gas beside the lock.
+#[derive(Clone, Debug, PartialEq)]
+struct Gas {
+    share: f64,
+    accumulator: Accumulator,
+    /// Compressions at which the slope of the force changes at once, m, and by how much, N/m.
+    knees: [[f64; 2]; 2],
 }
 
 impl Lock {
@@ -23,7 +33,11 @@ impl Lock {
         let reach_m = machine.arms.force_max_n / stiffness_n_m;
         let mut lock = Self { stiffness_n_m, gas: None, reach_m: [-reach_m, reach_m] };
         if gas.share != 0.0 {
-            lock.gas = Some((gas.share, Accumulator::new(machine, gas)));
+            let accumulator = Accumulator::new(machine, gas);
+            let [filling_m, bends_n_m] = accumulator.knee();
+            let comes_in_n_m = OIL_STIFFNESS_N_M - stiffness_n_m;
+            let knees = [[0.0, gas.share * comes_in_n_m], [filling_m, gas.share * bends_n_m]];
+            lock.gas = Some(Gas { share: gas.share, accumulator, knees });
             lock.reach_m[1] = lock.compression_m(machine.arms.force_max_n);
         }
         lock
@@ -35,7 +49,7 @@ impl Lock {
         let force_n = self.stiffness_n_m * compression_m;
         match &self.gas {
             // A hanging arm draws on the rod side, where no gas is.
-            Some((share, accumulator)) if compression_m > 0.0 => {
+            Some(Gas { share, accumulator, .. }) if compression_m > 0.0 => {
                 let [gas_n, gas_n_m] = accumulator.spring(compression_m);
                 let blend = |lock: f64, gas: f64| lock + share * (gas - lock);
                 [blend(force_n, gas_n), blend(self.stiffness_n_m, gas_n_m)]
@@ -44,11 +58,26 @@ impl Lock {
         }
     }
 
+    /// The same with the slope that the force has on the whole while the compression goes on by `travel_m`:
+    /// a step that passes a knee of the law feels either side of it by how far it goes there. So what the
+    /// step makes of it does not jump as the knee comes within its reach or leaves it.
+    #[must_use]
+    pub fn spring_along(&self, compression_m: f64, travel_m: f64) -> [f64; 2] {
+        let [force_n, slope_n_m] = self.spring(compression_m);
+        let end_m = compression_m + travel_m;
+        let bend_n_m = |[at_m, by_n_m]: [f64; 2]| {
+            let is_passed = (compression_m > at_m) != (end_m > at_m);
+            if is_passed { by_n_m * (end_m - at_m) / travel_m.abs() } else { 0.0 }
+        };
+        let knees = self.gas.iter().flat_map(|gas| gas.knees);
+        [force_n, knees.fold(slope_n_m, |slope_n_m, knee| slope_n_m + bend_n_m(knee))]
+    }
+
     /// Compression that makes `force_n`, m; the relief valve is not asked.
     #[must_use]
     pub fn compression_m(&self, force_n: f64) -> f64 {
         match &self.gas {
-            Some((share, accumulator)) if force_n > 0.0 => {
+            Some(Gas { share, accumulator, .. }) if force_n > 0.0 => {
                 accumulator.compression_m(*share, (1.0 - share) * self.stiffness_n_m, force_n)
             }
             _ => force_n / self.stiffness_n_m,
@@ -66,7 +95,6 @@ impl Lock {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::accumulator::OIL_STIFFNESS_N_M;
     use super::*;
     use crate::effects::{AccumulatorGas, LockStiffness};
 
@@ -133,6 +161,28 @@ mod tests {
         let [_, lock_n_m] = linear.spring(linear.compression_m(55e3));
         let [_, gas_n_m] = gas.spring(gas.compression_m(55e3));
         assert!((gas_n_m / lock_n_m - 1.0).abs() < 0.1, "{gas_n_m}");
+    }
+
+    /// Over a travel through both knees the slope is the secant's but for the gas' own curvature, and it goes
+    /// over into the slope on either side.
+    #[test]
+    fn a_step_through_the_knees_feels_either_side_by_its_share() {
+        let lock = with_share(0.4);
+        for (from_m, to_m) in [(-2e-4, 7e-4), (7e-4, -2e-4), (-1e-4, 1e-4), (2e-4, 5e-4)] {
+            let [force_n, slope_n_m] = lock.spring_along(from_m, to_m - from_m);
+            let secant_n_m = (lock.spring(to_m)[0] - force_n) / (to_m - from_m);
+            assert!((slope_n_m / secant_n_m - 1.0).abs() < 0.02, "{slope_n_m}, not {secant_n_m}");
+        }
+        for knee_m in [0.0, lock.gas.as_ref().unwrap().knees[1][0]] {
+            for travel_m in [-1e-4, 1e-4] {
+                let near = [-1e-12, 1e-12, 1e-12 - travel_m, -1e-12 - travel_m];
+                let [before, after, ahead, clear] =
+                    near.map(|by_m| lock.spring_along(knee_m + by_m, travel_m)[1]);
+                for (one, other) in [(before, after), (ahead, clear)] {
+                    assert!((one / other - 1.0).abs() < 1e-6, "{knee_m}: {one}, {other}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -24,6 +24,9 @@ const FULL_DISPLACEMENT_SHARE: f64 = 1.0 / 3.0;
 const CHARGE_PRESSURE_PA: f64 = 25.0e5;
 /// Pressure above charge at the largest wheel torque, Pa (convention, see above).
 const PRESSURE_AT_TORQUE_MAX_PA: f64 = 350.0e5;
+/// Share of torque or power asked beyond what there is, over which the integral comes to rest (assumed): at
+/// once would be a jump wherever they begin to run short.
+const SHORT: f64 = 0.05;
 
 /// Parameters of the transmission.
 #[derive(Clone, Debug, PartialEq)]
@@ -126,17 +129,21 @@ impl Drive {
         let mean_error = (targets[0] + targets[1] - means[0] - means[1]) / 2.0;
 
         let mut out = DriveOutput { engine_speed_rpm, ..DriveOutput::default() };
-        let mut circuit_nm = [0.0; 2];
+        // Of what there is, the share that is asked.
+        let (mut asked, mut circuit_nm) = (0.0_f64, [0.0; 2]);
         for c in 0..2 {
             let own_nm = self.circuit_gain_nms * (targets[c] - means[c]);
             let most_nm = self.torque_max_nm(c, input);
-            circuit_nm[c] = (state.mean_torque_nm + own_nm).clamp(-most_nm, most_nm);
+            let wanted_nm = state.mean_torque_nm + own_nm;
+            circuit_nm[c] = wanted_nm.clamp(-most_nm, most_nm);
+            if most_nm > 0.0 {
+                asked = asked.max(wanted_nm.abs() / most_nm);
+            }
             self.share(c, circuit_nm[c], means[c], input, &mut out.wheel_torque_nm);
         }
         let limit = self.limit_power(input, &mut out);
         for (c, circuit_nm) in circuit_nm.into_iter().enumerate() {
-            let above =
-                PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / self.wheel_torque_max_nm;
+            let above = PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / max_nm;
             for &wheel in &self.circuits[c] {
                 out.hold_nm[wheel] = self.standstill_drag[wheel].holds_nm(targets[c]);
             }
@@ -144,11 +151,9 @@ impl Drive {
             out.pump_pressure_pa[2 * c + forward] = CHARGE_PRESSURE_PA + above;
             out.pump_pressure_pa[2 * c + 1 - forward] = CHARGE_PRESSURE_PA;
         }
-        let saturated =
-            limit < 1.0 || (0..2).any(|c| circuit_nm[c].abs() >= self.torque_max_nm(c, input));
-        if !(saturated && mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0) {
-            self.integrate(state, mean_error, dt_s);
-        }
+        let winds_up = mean_error * (circuit_nm[0] + circuit_nm[1]) > 0.0;
+        let short = if winds_up { asked.max(limit.recip()) - 1.0 } else { 0.0 };
+        self.integrate(state, mean_error * (1.0 - short / SHORT).clamp(0.0, 1.0), dt_s);
         state.power_w = out.power_w;
         out
     }

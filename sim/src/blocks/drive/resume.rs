@@ -1,0 +1,55 @@
+//! A transmission taken up from what was measured: what no sensor shows is made to explain what they do.
+
+use xt28_machine::PerWheel;
+
+use super::{Drive, DriveInput, DriveState};
+use crate::effects::{DelayLine, Lag};
+
+/// How much harder than by the circuit's own gain a held drive draws the wheels to their speed: within
+/// some 30 ms, and stable at steps of 10 ms.
+const HOLDING_GAIN: f64 = 4.0;
+
+impl Drive {
+    /// A transmission taken up in the middle of what was measured: the throttle has stood for long, and
+    /// what holds the mean speed is what the speeds do not explain of the torques.
+    #[must_use]
+    pub fn resumed(&self, input: &DriveInput, torque_nm: &PerWheel<f64>, dt_s: f64) -> DriveState {
+        let delay_s = self.effects.throttle_delay.delay_s;
+        let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
+        let share = self.effects.engine_droop.speed_share(power_w);
+        let input = &DriveInput { engine_speed_rpm: input.engine_speed_rpm * share, ..*input };
+        let targets = [0, 1].map(|c| self.target_rad_s(c, input));
+        let held_nm = [0, 1].map(|c| {
+            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
+            circuit_nm - self.circuit_gain_nms * (targets[c] - self.mean_rad_s(c, input))
+        });
+        DriveState {
+            asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
+            target_rad_s: targets.map(Lag::new),
+            felt_power_w: Lag::new(power_w),
+            power_w,
+            mean_torque_nm: (held_nm[0] + held_nm[1]) / 2.0,
+        }
+    }
+
+    /// Lets the integral explain the torques measured at the speeds measured, as if they had just come
+    /// about, and draw the wheels to those speeds; throttle and engine stay as they are.
+    pub(crate) fn reload(
+        &self,
+        state: &mut DriveState,
+        input: &DriveInput,
+        speed_rad_s: &PerWheel<f64>,
+        torque_nm: &PerWheel<f64>,
+    ) {
+        let measured = DriveInput { wheel_speed_rad_s: *speed_rad_s, ..*input };
+        let held_nm = [0, 1].map(|c| {
+            let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
+            let target = state.target_rad_s[c].value();
+            let (wanted, is) = (self.mean_rad_s(c, &measured), self.mean_rad_s(c, input));
+            circuit_nm - self.circuit_gain_nms * (target - wanted)
+                + HOLDING_GAIN * self.circuit_gain_nms * (wanted - is)
+        });
+        let max = self.wheel_torque_max_nm;
+        state.mean_torque_nm = (0.5 * (held_nm[0] + held_nm[1])).clamp(-max, max);
+    }
+}

@@ -9,9 +9,12 @@ use smooth_rig::QUANTITIES;
 use smooth_rig::numbers::{Base, Knob};
 
 /// Shares of a tolerance by which a number is nudged, ten times that beside it. The first is what is asked for.
-/// A machine that touches, slips or stops one step sooner answers with another slope from there on; such a
-/// kink is real, and may lie within reach of the larger nudge. The second is to be out of its reach: smaller
-/// nudges are further from a kink and see no less of a jump.
+///
+/// Real kinks, none of them a jump: a machine that touches, slips or stops one step sooner answers with another
+/// slope from there on; so does one that crosses the edge of a deadband or of a play a step sooner, whose pump or
+/// engine begins to run short, whose delay comes to be one more of whole steps. One may lie within reach of the
+/// larger nudge. The second is to be out of its reach: smaller nudges are further from a kink and see no
+/// less of a jump. An effect that is not there has one side only, and is nudged to that.
 const NUDGES: [f64; 2] = [1e-6, 1e-7];
 /// Most cases, of a hundred, in which the first nudge may have met a kink.
 const KINKED_PER_CENT: usize = 3;

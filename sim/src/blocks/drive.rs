@@ -143,7 +143,8 @@ impl Drive {
         }
         let limit = self.limit_power(input, &mut out);
         for (c, circuit_nm) in circuit_nm.into_iter().enumerate() {
-            let above = PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / max_nm;
+            let above =
+                PRESSURE_AT_TORQUE_MAX_PA * limit * circuit_nm.abs() / self.wheel_torque_max_nm;
             for &wheel in &self.circuits[c] {
                 out.hold_nm[wheel] = self.standstill_drag[wheel].holds_nm(targets[c]);
             }

@@ -200,6 +200,22 @@ impl Estimate {
         Self { name: parameter.name, value: [value, interval[0], interval[1]] }
     }
 
+    /// Its interval; of no width, as of a value that nobody fitted, it bounds nothing.
+    #[must_use]
+    pub(super) const fn interval(&self) -> [f64; 2] {
+        let [_, low, high] = self.value;
+        if low < high { [low, high] } else { [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// Standard deviation that the interval stands for, by its longer side: the other may end with the
+    /// parameter's range. Infinite for an interval of no width, as of a value that nobody fitted.
+    #[must_use]
+    pub(super) fn deviation(&self) -> f64 {
+        let [value, low, high] = self.value;
+        let reach = (high - value).max(value - low);
+        if reach > 0.0 { reach / NINETY } else { f64::INFINITY }
+    }
+
     /// The same with all of another's interval in its own.
     #[must_use]
     pub(super) fn reaching(mut self, other: &Self) -> Self {

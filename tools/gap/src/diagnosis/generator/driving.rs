@@ -19,9 +19,9 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 /// What the block did less what was measured.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DriveErrors {
-    /// Forward less reverse pressure, mean of both circuits, Pa; `NaN` while a wheel may run away.
+    /// Forward less reverse pressure, mean of both circuits, Pa.
     pub(super) pressure_pa: Samples,
-    /// Half of what the first circuit has more than the second, Pa; `NaN` as well.
+    /// Half of what the first circuit has more than the second, Pa.
     pub(super) difference_pa: Samples,
     /// Mean torque on a wheel that mass, grade and rolling take, mean over [`FORCE_S`], Nm.
     pub(super) force_nm: Samples,
@@ -29,10 +29,6 @@ pub(super) struct DriveErrors {
 
 /// Time in which the integral part of the speed's control is drawn to what was measured, s.
 const DRAWN_S: f64 = 0.25;
-/// Load of a cylinder below which its wheel may be in the air, N, and how long a wheel that has come down again
-/// may still run ahead, s. What an ECU does about one that runs away, and with which circuit, is its own.
-const CARRYING_N: f64 = 8_000.0;
-const RUNS_AHEAD_S: f64 = 1.0;
 /// The frames pitch on their arms as the machine speeds up: forces balance over this time only, s.
 const FORCE_S: f64 = 2.0;
 
@@ -56,16 +52,16 @@ fn pressure_errors(
     let mut lag = Lag::new(signals.throttle[0]);
     let (mut common_pa, mut difference_pa, mut since_s) = (0.0, 0.0, 0.0);
     let (mut errors, mut idle_nm) = (DriveErrors::default(), Vec::with_capacity(signals.len));
-    let mut lifted_s = RUNS_AHEAD_S;
     for i in 0..signals.len {
         // A command is taken up in the ECU's next period, on average one and a half samples later.
         let taken = |back: usize| signals.throttle[i.saturating_sub(back)];
         let asked = 0.5 * (taken(1) + taken(2));
         let throttle = lag.step(asked, machine.drive.speed_time_constant_s, DT_S);
         let input = DriveInput {
-            // Motors at a third: what the pump then gives is the throttle's share of full speed.
-            pump_displacement: [throttle; 2],
-            motor_displacement: PerWheel::splat(1.0 / 3.0),
+            // As if the pump alone made the speed, of which its whole displacement is a third: whether motors at
+            // less than theirs have less torque is each make's own.
+            pump_displacement: [3.0 * throttle; 2],
+            motor_displacement: PerWheel::splat(1.0),
             engine_speed_rpm: machine.drive.engine_speed_rpm,
             wheel_speed_rad_s: wheel_speeds(signals, effects, i),
         };
@@ -82,11 +78,8 @@ fn pressure_errors(
             state.mean_torque_nm -= share * nm_per_pa * common_pa;
             since_s = 0.0;
         }
-        let is_lifted = Wheel::ALL.iter().any(|&w| signals.cylinder_load_n[w][i] < CARRYING_N);
-        lifted_s = if is_lifted { 0.0 } else { lifted_s + DT_S };
-        let told = |pa: f64| if lifted_s < RUNS_AHEAD_S { f64::NAN } else { pa };
-        errors.pressure_pa.push(told(common_pa));
-        errors.difference_pa.push(told(difference_pa));
+        errors.pressure_pa.push(common_pa);
+        errors.difference_pa.push(difference_pa);
     }
     (errors, idle_nm)
 }

@@ -4,7 +4,9 @@
 //! differences. Errors are in floors, weighted for their correlation in time, and grow only linearly
 //! beyond a few floors: a wheel that slips once must not decide. The machine's own tolerances
 //! (neighbours) give way within their priors, so that a cause need not explain a heavier frame; they
-//! are near enough linear for slopes taken once. What comes out are the causes alone: that is what an
+//! are near enough linear for slopes taken once. What blocks say of a parameter stands beside what the whole
+//! machine does, and its interval, which holds the truth as often as it should, bounds it: what the simulator does
+//! not know of the whole machine draws a play of the joints down by a quarter. What comes out are the causes alone: that is what an
 //! overlay can hold, and what is judged.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -51,6 +53,10 @@ struct Turn {
     cause: usize,
     scope: Scope,
     parameter: &'static Parameter,
+    /// What blocks leave it uncertain by, tolerances; infinite where they say nothing.
+    known_by: f64,
+    /// Values that they leave open.
+    open: [f64; 2],
     /// Whether the whole machine answers to it. Commands come as they are in the log, so a bus shows not.
     shows: bool,
 }
@@ -169,7 +175,11 @@ impl HowFar {
                 gradient[turns.len() + k] += gave;
                 matrix[(turns.len() + k, turns.len() + k)] += 1.0;
             }
-            let cost = squares + gave.norm_squared();
+            for (k, turn) in turns.iter().enumerate() {
+                gradient[k] += turn.away(at[k], start[k]) / turn.known_by;
+                matrix[(k, k)] += turn.known_by.powi(-2);
+            }
+            let cost = squares + gave.norm_squared() + against(turns, start, &at);
             sigma = deviations(&matrix, turns, &all, &errors);
             let mut gained = 0.0;
             for _ in 0..3 {
@@ -183,7 +193,7 @@ impl HowFar {
                 let giving = &gave + step.rows(turns.len(), knobs.len());
                 let (machine, effects) = self.given(&knobs, &giving, effects_at(&moved));
                 let trial = self.errors(&machine, &effects, since_s);
-                let after = sum(&trial) + giving.norm_squared();
+                let after = sum(&trial) + giving.norm_squared() + against(turns, start, &moved);
                 if after < cost {
                     gained = 1.0 - after / cost;
                     (at, gave, errors) = (moved, giving, trial);
@@ -245,18 +255,38 @@ impl HowFar {
     }
 }
 
+impl Turn {
+    /// How far `value` is from what blocks say, by what these leave uncertain.
+    fn away(&self, value: f64, said: f64) -> f64 {
+        (value - said) / self.parameter.tolerance / self.known_by
+    }
+}
+
+/// What blocks that `said` something have against values of `at`, as squares.
+fn against(turns: &[Turn], said: &[f64], at: &[f64]) -> f64 {
+    let each = turns.iter().zip(said.iter().zip(at));
+    each.map(|(turn, (said, at))| turn.away(*at, *said).powi(2)).sum()
+}
+
 fn turns(causes: &[Cause]) -> Vec<Turn> {
     let of = |(cause, c): (usize, &Cause)| {
         let (scope, shows) = (c.scope, c.effect.block != Block::Bus);
-        let turn = move |parameter| Turn { cause, scope, parameter, shows };
+        let turn = move |parameter: &'static Parameter| {
+            let known = c.parameters.iter().find(|e| e.name == parameter.name);
+            let known_by = known.map_or(f64::INFINITY, |e| e.deviation() / parameter.tolerance);
+            let [low, high] = parameter.range;
+            let [from, to] = known.map_or(parameter.range, Estimate::interval);
+            let open = [from.max(low), to.min(high)];
+            Turn { cause, scope, parameter, known_by, open, shows }
+        };
         c.effect.parameters.iter().map(turn).collect::<Vec<_>>()
     };
     causes.iter().enumerate().flat_map(of).collect()
 }
 
-/// A parameter moved by a step in tolerances, within its range.
+/// A parameter moved by a step in tolerances, within what is open.
 fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
-    let [low, high] = turn.parameter.range;
+    let [low, high] = turn.open;
     (at + step * turn.parameter.tolerance).clamp(low, high)
 }
 

@@ -16,11 +16,13 @@ mod heat;
 mod horizon;
 mod html;
 mod machine_view;
+mod size;
 mod strip;
 mod svg;
 mod table;
 mod text;
 mod trace;
+mod unit;
 mod words;
 
 pub use headline::headline;

@@ -6,9 +6,9 @@ mod made_up;
 
 use answer::{diagnosis, inquiry, page, page_of};
 use xt28_gap::diagnosis::details::REGIMES;
-use xt28_gap::diagnosis::{Details, Diagnosis, Spot, Verdict};
+use xt28_gap::diagnosis::{Details, Diagnosis, Estimate, Spot, Verdict};
 use xt28_gap::page::{headline, text};
-use xt28_sim::effects::Block;
+use xt28_sim::effects::{Block, find};
 
 #[test]
 fn who_decides_reads_how_large_it_is_and_who_mends_which_gap_has_which_share() {
@@ -17,7 +17,7 @@ fn who_decides_reads_how_large_it_is_and_who_mends_which_gap_has_which_share() {
     else {
         panic!("two pages")
     };
-    assert!(decides.contains("0.210 (0.190 to 0.230) at the front axle"), "{decides}");
+    assert!(decides.contains("delay 210 ms (190 to 230), the front axle"), "{decides}");
     assert!(
         mends.contains("<td class=\"number\">84.0</td><td class=\"number\">50 %</td>"),
         "{mends}"
@@ -94,7 +94,7 @@ fn words_for_a_terminal_say_what_the_page_says() {
     for part in [
         "arm-delay at the front axle or wheel FR (probability 93 %)",
         "wheels not told apart: the front axle (70 %), wheel FR (30 %)",
-        "0.210 (0.190 to 0.230)",
+        "delay 210 ms (190 to 230)",
         "not to be told from valve-lag",
         "-20 % (60 % to 85 %) over whole runs",
         "tells arm-delay, valve-lag apart, 3.1 nats expected (odds of 22 to 1)",
@@ -277,4 +277,22 @@ fn a_cause_that_shrinks_nothing_is_said_to_once_on_each_page_and_in_the_notes() 
     assert!(text(&idle).contains(words));
     idle.verdict = Verdict::Unknown;
     assert_eq!(idle.unshrunk(), Vec::<String>::new(), "it is not stood by");
+}
+
+#[test]
+fn what_reads_too_little_is_said_to_wherever_it_is_named() {
+    let mut bias = diagnosis(Verdict::Effect);
+    let name = find("pressure-bias").unwrap().parameters[0].name;
+    bias.causes.truncate(1);
+    bias.causes[0].effect = find("pressure-bias").unwrap();
+    bias.causes[0].parameters = vec![Estimate { name, value: [-7.34e5, -11.4e5, -3.28e5] }];
+    let size = "reads 7.3 bar too little (3.3 to 11.4)";
+    let (words, page) = (text(&bias), page_of(&bias));
+    assert!(words.contains(&format!("off by a constant; {size}, the front axle")), "{words}");
+    assert_eq!((words.matches(size).count(), page.matches(size).count()), (2, 2));
+    for said in [words, page] {
+        assert!(!said.contains("too much") && !said.contains("bias_pa"), "{said}");
+    }
+    let json = serde_json::to_value(&bias).unwrap();
+    assert_eq!(json["causes"][0]["parameters"]["bias_pa"][0], -7.34e5, "SI, for programs");
 }

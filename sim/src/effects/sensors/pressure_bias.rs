@@ -1,4 +1,4 @@
-//! `pressure-bias`: the bore chamber's pressure sensor reads a constant too much.
+//! `pressure-bias`: the bore chamber's pressure sensor is off by a constant.
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
@@ -13,7 +13,7 @@ pub struct PressureBias {
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "pressure-bias",
     block: Block::Sensor,
-    meaning: "a bore pressure sensor reads a constant too much",
+    meaning: "a bore pressure sensor is off by a constant",
     source: "assumed: transmitters of 400 bar whose zero is trimmed keep it within half a bar",
     parameters: &[Parameter {
         name: "bias_pa",

@@ -1,4 +1,4 @@
-//! `pressure-scale`: the pressure sensors of a cylinder read in proportion too much.
+//! `pressure-scale`: the pressure sensors of a cylinder are off in proportion.
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
@@ -30,7 +30,7 @@ impl Default for PressureScale {
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "pressure-scale",
     block: Block::Sensor,
-    meaning: "pressure sensors read in proportion too much",
+    meaning: "pressure sensors are off in proportion to what they read",
     source: "assumed: pressure transmitters are within 1 %, and both of a cylinder alike",
     parameters: &[
         Parameter {

@@ -1,4 +1,4 @@
-//! `stroke-bias`: a position sensor reads a constant too much.
+//! `stroke-bias`: a position sensor is off by a constant.
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
@@ -13,7 +13,7 @@ pub struct StrokeBias {
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "stroke-bias",
     block: Block::Sensor,
-    meaning: "a position sensor reads a constant too much",
+    meaning: "a position sensor is off by a constant",
     source: "assumed: zero points are set by hand to a millimetre",
     parameters: &[Parameter {
         name: "bias_m",

@@ -1,4 +1,4 @@
-//! `stroke-scale`: a position sensor reads in proportion too much.
+//! `stroke-scale`: a position sensor is off in proportion.
 
 use crate::effects::{Block, Effect, Parameter, Slot};
 
@@ -19,7 +19,7 @@ impl Default for StrokeScale {
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "stroke-scale",
     block: Block::Sensor,
-    meaning: "a position sensor reads in proportion too much",
+    meaning: "a position sensor is off in proportion to what it reads",
     source: "assumed: linear position sensors are within half a percent",
     parameters: &[Parameter {
         name: "factor",

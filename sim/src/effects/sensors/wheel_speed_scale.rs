@@ -20,7 +20,7 @@ impl Default for WheelSpeedScale {
 pub(in crate::effects) const EFFECT: Effect = Effect {
     name: "wheel-speed-scale",
     block: Block::Sensor,
-    meaning: "a wheel speed sensor reads in proportion too much",
+    meaning: "a wheel speed sensor is off in proportion to what it reads",
     source: "assumed: pulse counts are exact, the rolling radius is known to 1 %",
     parameters: &[Parameter {
         name: "factor",

@@ -9,9 +9,10 @@ use super::caption::{small_gaps, unshrunk};
 use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN, UNSEEN};
 use super::headline::{headline, is_open, spot};
 use super::machine_view;
+use super::size::at_wheels;
 use super::svg::{Anchor, Svg, escape};
-use super::words::{estimate, judged_on, on, percent, shrinks};
-use crate::diagnosis::{Cause, Details, Diagnosis, ShareOf, Verdict, WORTH_TELLING};
+use super::words::{judged_on, percent, shrinks};
+use crate::diagnosis::{Details, Diagnosis, ShareOf, Verdict, WORTH_TELLING};
 
 /// The page's body.
 pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
@@ -22,7 +23,7 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
             "<p class=\"meaning\"><b>{}</b>: {}.<br><small>{}</small></p>",
             escape(cause.effect.name),
             escape(cause.effect.meaning),
-            escape(&sizes(cause))
+            escape(&at_wheels(cause))
         );
     }
     let small = small_gaps(diagnosis);
@@ -36,14 +37,6 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
         next(diagnosis),
         basis(details)
     )
-}
-
-/// How large a cause is, at which wheels.
-fn sizes(cause: &Cause) -> String {
-    let sizes: Vec<String> = cause.parameters.iter().map(estimate).collect();
-    let at =
-        if cause.effect.has_scope() { format!(" at {}", on(cause.scope)) } else { String::new() };
-    format!("{}{at}", sizes.join(", "))
 }
 
 /// A bar of the probabilities.

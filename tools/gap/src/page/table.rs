@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use super::caption::{gap_over_noise, how_to_read_shares, share_of, small_gaps};
+use super::size::each;
 use super::svg::escape;
 use super::words::{
     by_share, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks, without_a_name,
@@ -93,14 +94,7 @@ fn wheels(cause: &Cause) -> String {
 }
 
 fn parameters(cause: &Cause) -> String {
-    let mut out: Vec<String> = cause
-        .parameters
-        .iter()
-        .map(|one| {
-            let [best, low, high] = one.value.map(short);
-            format!("{} {best} <small>({low} to {high})</small>", escape(one.name))
-        })
-        .collect();
+    let mut out: Vec<String> = each(cause).iter().map(|size| escape(size)).collect();
     if by_share(cause).first().is_some_and(|(scope, _)| *scope != cause.scope) {
         out.push(format!("<small>at {}</small>", on(cause.scope)));
     }

@@ -5,9 +5,8 @@ use core::fmt::Write as _;
 use super::ahead::{after_that, how_well, purpose};
 use super::caption::{how_to_read_shares, share_of, small_gaps};
 use super::headline;
-use super::words::{
-    elsewhere, estimate, is_elsewhere, judged_on, percent, short, shrink, without_a_name,
-};
+use super::size::{at_wheels, sizes};
+use super::words::{elsewhere, is_elsewhere, judged_on, percent, short, shrink, without_a_name};
 use crate::diagnosis::{Cause, Diagnosis};
 
 /// Causes below this probability are left out, but for the first few.
@@ -22,7 +21,8 @@ const PLACES: usize = 8;
 pub fn text(diagnosis: &Diagnosis) -> String {
     let mut out = headline(diagnosis) + "\n";
     for cause in diagnosis.stood_by() {
-        let _ = writeln!(out, "  {}: {}", cause.effect.name, cause.effect.meaning);
+        let (name, meaning) = (cause.effect.name, cause.effect.meaning);
+        let _ = writeln!(out, "  {name}: {meaning}; {}", at_wheels(cause));
     }
     places(&mut out, diagnosis);
     causes(&mut out, diagnosis);
@@ -103,13 +103,12 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
         |(i, cause): &(usize, &Cause)| *i < LISTED_ANYWAY || cause.probability > LISTED_ABOVE;
     for (_, cause) in diagnosis.causes.iter().enumerate().filter(listed) {
         let wheels = if cause.effect.has_scope() { cause.scope.to_string() } else { String::new() };
-        let parameters: Vec<String> = cause.parameters.iter().map(estimate).collect();
         let _ = writeln!(
             out,
             "{:>11}  {:<22} {wheels:<6} {}",
             percent(cause.probability),
             cause.effect.name,
-            parameters.join(", ")
+            sizes(cause)
         );
         if !cause.alike().is_empty() {
             let _ = writeln!(out, "{:>11}  not to be told from {}", "", cause.alike().join(", "));

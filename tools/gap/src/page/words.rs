@@ -3,7 +3,7 @@
 use xt28_machine::{Axle, Side};
 use xt28_sim::effects::Scope;
 
-use crate::diagnosis::{Cause, Diagnosis, Estimate, Shrink, WORTH_TELLING};
+use crate::diagnosis::{Cause, Diagnosis, Shrink, WORTH_TELLING};
 
 /// Wheels that a cause may be at of which each is told.
 const ELSEWHERE: usize = 4;
@@ -98,12 +98,6 @@ pub(super) fn short(value: f64) -> String {
     }
     let decimals = usize::try_from(2 - exponent).unwrap_or(0);
     format!("{value:.decimals$}")
-}
-
-/// A parameter with its 90 % interval.
-pub(super) fn estimate(one: &Estimate) -> String {
-    let [best, low, high] = one.value.map(short);
-    format!("{} = {best} ({low} to {high})", one.name)
 }
 
 /// A shrink over its three horizons.

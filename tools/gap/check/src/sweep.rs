@@ -12,7 +12,7 @@ use serde::Serialize;
 use xt28_gap::diagnosis::{Cause, Diagnosis, Generator, Inquiry, Spot, Verdict};
 use xt28_gap_plants::{Case, Cause as Fault, Scope as Wheels, Scopes};
 use xt28_machine::Wheel;
-use xt28_sim::effects::{CATALOGUE, Effect, Scope};
+use xt28_sim::effects::{Block, CATALOGUE, Effect, Scope};
 
 use crate::examination::truth_of;
 use crate::source::Source;
@@ -138,7 +138,9 @@ fn alike(whole: &Diagnosis, effect: &Effect, named: &Cause) -> bool {
 fn shows_at(effect: &Effect, on: Scope, place: &Spot) -> bool {
     let hears = |generator: &Generator| generator.hears(effect, on);
     let mut blocks = Generator::all().into_iter().filter(hears).map(Generator::block);
-    blocks.any(|block| block == place.block) && meet(place.scope, on)
+    // How the machine stands takes a wheel off the ground by what another does.
+    let reaches = place.block == Block::Payload || meet(place.scope, on);
+    blocks.any(|block| block == place.block) && reaches
 }
 
 fn meet(a: Scope, b: Scope) -> bool {

@@ -36,10 +36,14 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
     };
     let mut of_wheels: BTreeMap<String, Vec<(Wheel, &Parting)>> = BTreeMap::new();
     for parting in &all {
-        match wheel(parting.left.generator, parting.left.signal) {
+        let (generator, signal) = (parting.left.generator, parting.left.signal);
+        match wheel(generator, signal) {
+            // How a machine stands takes one wheel off the ground by what another does: none is of others.
+            Some(wheel) if matches!(signal, Signal::Contact(_)) => {
+                place(Scope::Wheel(wheel), &[parting]);
+            }
             Some(wheel) => {
-                let signal = parting.left.signal.to_string();
-                of_wheels.entry(signal).or_default().push((wheel, parting));
+                of_wheels.entry(signal.to_string()).or_default().push((wheel, parting));
             }
             None => place(Scope::All, &[parting]),
         }
@@ -54,7 +58,8 @@ pub(super) fn places(before: &[Left], after: &[Left]) -> Vec<Place> {
             place(scope, &within.map(|(_, parting)| *parting).collect::<Vec<_>>());
         }
     }
-    places.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let gap = |place: &Place| place.gap_over_noise;
+    places.sort_by(|(a, one), (b, other)| b.total_cmp(a).then(gap(other).total_cmp(&gap(one))));
     places.into_iter().map(|(_, place)| place).collect()
 }
 
@@ -76,21 +81,18 @@ impl<'a> Parting<'a> {
     }
 }
 
-/// The signal in words, with its joint or wheel where it is one of some. A wheel that seems to hang in
-/// the air says that the machine does not stand as its strokes have it, not that this wheel is the matter:
-/// its place is the machine.
+/// The signal in words, with its joint where it is of one.
 fn residual(generator: Generator, signal: Signal) -> String {
     match (generator, signal) {
         (Generator::Joint(0) | Generator::SteerEcu(0), signal) => format!("front {signal}"),
         (Generator::Joint(_) | Generator::SteerEcu(_), signal) => format!("rear {signal}"),
-        (_, signal @ Signal::Contact(_)) => signal.with_wheel(),
         (_, signal) => signal.to_string(),
     }
 }
 
 fn wheel(generator: Generator, signal: Signal) -> Option<Wheel> {
     match signal {
-        Signal::WheelSpeed(wheel) => Some(wheel),
+        Signal::WheelSpeed(wheel) | Signal::Contact(wheel) => Some(wheel),
         _ => generator.wheel(),
     }
 }
@@ -179,16 +181,20 @@ mod tests {
     }
 
     #[test]
-    fn a_wheel_that_seems_to_hang_is_told_by_name_and_placed_on_the_whole_machine() {
+    fn a_wheel_that_seems_to_hang_is_told_alone_whatever_the_others_do() {
         let of = |generator, signal| Left { generator, signal, ..left(Wheel::Fr, 81.0) };
         let signal = Signal::Contact(Wheel::Ml);
         let both = [of(Generator::Stance, signal), of(Generator::Joint(1), Signal::JointAngle)];
-        let [one, other] = &places(&both, &both)[..] else { panic!("two places") };
-        assert_eq!(
-            (one.spot.scope, one.spot.residual.as_str()),
-            (Scope::All, "touch of the ground, ML")
-        );
+        let places_of = places(&both, &both);
+        let [one, other] = &places_of[..] else { panic!("two places") };
+        let hangs = (Scope::Wheel(Wheel::Ml), "touch of the ground");
+        assert_eq!((one.spot.scope, one.spot.residual.as_str()), hangs);
+        assert!(one.spot.is_of(Generator::Stance, signal) && one.spot.has_wheels());
+        assert!(!one.spot.is_of(Generator::Stance, Signal::Contact(Wheel::Fr)));
+        assert_eq!(unexplained((Generator::Stance, signal), &places_of), one.spot);
         assert_eq!(other.spot.residual, "rear joint angle");
+        let axle = [Wheel::Fr, Wheel::Fl].map(|w| of(Generator::Stance, Signal::Contact(w)));
+        assert_eq!(places(&axle, &axle).len(), 2);
     }
 
     #[test]

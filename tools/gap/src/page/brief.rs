@@ -6,13 +6,17 @@ use xt28_machine::Machine;
 
 use super::ahead::purpose;
 use super::caption::{small_gaps, unshrunk};
-use super::colour::{AFTER, ALONE, BEFORE, INK, NOTHING, OTHER, UNKNOWN, UNSEEN};
-use super::headline::{headline, is_open, spot};
+use super::colour::{AFTER, BEFORE, INK};
+use super::headline::{clause, headline, is_open, spot};
 use super::machine_view;
 use super::size::at_wheels;
+use super::sureness::sureness;
 use super::svg::{Anchor, Svg, escape};
-use super::words::{judged_on, percent, shrinks};
-use crate::diagnosis::{Details, Diagnosis, ShareOf, Verdict, WORTH_TELLING};
+use super::words::{judged_on, shrinks};
+use crate::diagnosis::{Details, Diagnosis, ShareOf, Verdict};
+
+/// Words that one reads at a glance.
+const AT_A_GLANCE: usize = 15;
 
 /// The page's body.
 pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) -> String {
@@ -29,8 +33,8 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
     let small = small_gaps(diagnosis);
     let small = small.map_or_else(String::new, |why| format!("<p class=\"small\">{why}</p>"));
     format!(
-        "<h1>{}</h1>{meanings}<div class=\"columns\"><div>{}{small}</div><div><h2>How sure</h2>{}<h2>How far the gap shrinks</h2>{}<h2>What to do next</h2>{}</div></div>{}",
-        escape(&headline(diagnosis)),
+        "{}{meanings}<div class=\"columns\"><div>{}{small}</div><div><h2>How sure</h2>{}<h2>How far the gap shrinks</h2>{}<h2>What to do next</h2>{}</div></div>{}",
+        head(diagnosis),
         machine_view::draw(machine, diagnosis),
         sureness(diagnosis),
         shrinking(diagnosis),
@@ -39,43 +43,13 @@ pub(super) fn page(machine: &Machine, diagnosis: &Diagnosis, details: &Details) 
     )
 }
 
-/// A bar of the probabilities.
-fn sureness(diagnosis: &Diagnosis) -> String {
-    let (width, height) = (350.0, 22.0);
-    let mut parts: Vec<(String, f64, &str)> = Vec::new();
-    let stood: Vec<&str> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
-    // Two causes may each be likely: the likelier one is there with the other, or alone.
-    let likely = || diagnosis.stood_by().map(|cause| cause.probability);
-    let [first, both] = [likely().fold(0.0, f64::max), likely().fold(f64::INFINITY, f64::min)];
-    if let [one, others @ ..] = &stood[..] {
-        parts.push((stood.join(" and "), both, BEFORE));
-        if !others.is_empty() {
-            parts.push((format!("{one} alone"), first - both, ALONE));
-        }
+/// The verdict: in a sentence where that is short, else in a clause with the sentence below.
+fn head(diagnosis: &Diagnosis) -> String {
+    let sentence = headline(diagnosis);
+    if sentence.split_whitespace().count() <= AT_A_GLANCE {
+        return format!("<h1>{}</h1>", escape(&sentence));
     }
-    let [none, unknown] = [diagnosis.probability_none, diagnosis.probability_unknown];
-    let unseen = diagnosis.probability_unseen;
-    let rest = (1.0 - first - none - unknown - unseen).max(0.0);
-    parts.push(("other causes".to_owned(), rest, OTHER));
-    parts.push(("nothing beyond tolerances".to_owned(), none, NOTHING));
-    if unseen >= WORTH_TELLING {
-        parts.push(("an effect that does not show".to_owned(), unseen, UNSEEN));
-    }
-    parts.push(("not in the catalogue".to_owned(), unknown, UNKNOWN));
-    let total: f64 = parts.iter().map(|(_, share, _)| share).sum();
-    let rows: f64 = parts.iter().map(|_| 18.0).sum();
-    let mut svg = Svg::new(width, height + rows + 8.0);
-    let (mut x, mut y) = (0.0, height + 18.0);
-    for (name, share, colour) in &parts {
-        let part = width * share / total.max(1e-9);
-        svg.rect([x, 0.0], [part, height], colour, "none");
-        x += part;
-        svg.rect([0.0, y - 9.0], [10.0, 10.0], colour, "none");
-        let words = format!("{} {name}", percent(*share));
-        svg.text([16.0, y], &words, Anchor::Start, 12.0, INK);
-        y += 18.0;
-    }
-    svg.finish("Probabilities of the causes, of nothing, and of something unknown")
+    format!("<h1>{}.</h1><p>{}</p>", escape(&clause(diagnosis)), escape(&sentence))
 }
 
 /// What is left of the gap at each horizon.

@@ -1,12 +1,14 @@
 //! The verdict in one sentence, no surer than the logs make it.
 
-use super::words::{by_share, on, percent};
+use xt28_sim::effects::Scope;
+
+use super::words::{by_share, capitalised, on, percent};
 use crate::diagnosis::{Cause, Diagnosis, Spot, Verdict};
 
 /// How likely, beside the likeliest, other wheels have to be to be in the headline.
 const SAID_ABOVE: f64 = 0.25;
 /// How likely another answer has to be to be told beside the verdict.
-const BESIDE_ABOVE: f64 = 0.25;
+pub(super) const BESIDE_ABOVE: f64 = 0.25;
 /// How many floors a gap has to be to be told beside one that nothing explains.
 const LARGER: f64 = 5.0;
 
@@ -90,13 +92,65 @@ fn larger(diagnosis: &Diagnosis) -> Option<String> {
 /// The signal that nothing known explains: the one that speaks against the best of the catalogue, else
 /// the one that parts most.
 pub(super) fn spot(diagnosis: &Diagnosis) -> Option<String> {
+    spot_of(diagnosis).map(of_wheels)
+}
+
+pub(super) fn spot_of(diagnosis: &Diagnosis) -> Option<&Spot> {
     let largest = diagnosis.places.first().map(|place| &place.spot);
-    diagnosis.unexplained.as_ref().or(largest).map(of_wheels)
+    diagnosis.unexplained.as_ref().or(largest)
 }
 
 fn of_wheels(spot: &Spot) -> String {
     let wheels = if spot.has_wheels() { format!(" ({})", on(spot.scope)) } else { String::new() };
     format!("{}{wheels}", spot.residual)
+}
+
+/// The verdict in a clause that one reads at a glance; what it leaves out is in the headline.
+pub(super) fn clause(diagnosis: &Diagnosis) -> String {
+    let said = match diagnosis.verdict {
+        Verdict::Effect if diagnosis.stood_by().next().is_none() => {
+            return "Something parts from the simulator, and these logs do not tell what"
+                .to_owned();
+        }
+        Verdict::Effect => stood(diagnosis),
+        Verdict::None if diagnosis.not_testable.is_empty() => {
+            "nothing beyond ordinary tolerances".to_owned()
+        }
+        Verdict::None => {
+            "nothing beyond ordinary tolerances in what these logs can show".to_owned()
+        }
+        Verdict::Unknown => {
+            let spot = spot(diagnosis);
+            let place = spot.map_or_else(String::new, |spot| format!(", foremost in {spot}"));
+            format!("something that no known effect explains{place}")
+        }
+    };
+    match diagnosis.verdict {
+        _ if is_open(diagnosis) => format!("Perhaps {said}"),
+        // It begins with the effect's name, which is small anyway.
+        Verdict::Effect => said,
+        Verdict::None | Verdict::Unknown => capitalised(&said),
+    }
+}
+
+/// The causes stood by, each with its wheels where these are one answer.
+fn stood(diagnosis: &Diagnosis) -> String {
+    let mut is_in_doubt = false;
+    let mut each = Vec::new();
+    for cause in diagnosis.stood_by() {
+        let name = cause.effect.name;
+        each.push(match &told_scopes(cause)[..] {
+            _ if !cause.effect.has_scope() => name.to_owned(),
+            [] => format!("{name} at {}", on(cause.scope)),
+            [one] => format!("{name} at {}", on(*one)),
+            _ => {
+                is_in_doubt = true;
+                name.to_owned()
+            }
+        });
+    }
+    let doubt = if is_in_doubt { ", wheels not told apart" } else { "" };
+    format!("{}{doubt}", each.join(" and "))
 }
 
 /// Something is wrong, and nothing is likelier than not.
@@ -111,15 +165,17 @@ fn undecided(diagnosis: &Diagnosis) -> String {
     )
 }
 
-/// An effect with its wheels and probability.
-fn cause(cause: &Cause) -> String {
+/// The wheels that are likely enough to be told of a cause, the likeliest first.
+pub(super) fn told_scopes(cause: &Cause) -> Vec<Scope> {
     let scopes = by_share(cause);
     let likely = scopes.first().map_or(1.0, |(_, share)| *share);
-    let told: Vec<String> = scopes
-        .iter()
-        .filter(|(_, share)| *share > SAID_ABOVE * likely)
-        .map(|(scope, _)| on(*scope))
-        .collect();
+    let told = scopes.into_iter().filter(|(_, share)| *share > SAID_ABOVE * likely);
+    told.map(|(scope, _)| scope).collect()
+}
+
+/// An effect with its wheels and probability.
+fn cause(cause: &Cause) -> String {
+    let told: Vec<String> = told_scopes(cause).into_iter().map(on).collect();
     let whose = match &told[..] {
         _ if !cause.effect.has_scope() => String::new(),
         [] => format!(" at {}", on(cause.scope)),

@@ -2,8 +2,9 @@
 
 use xt28_machine::Machine;
 
+use super::headline::clause;
 use super::svg::escape;
-use super::{brief, engineer, headline};
+use super::{brief, engineer};
 use crate::diagnosis::{Details, Diagnosis};
 
 const STYLE: &str = "\
@@ -58,7 +59,7 @@ pub fn html(
     };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>{}</title><style>\n{STYLE}</style></head><body>\n<section class=\"page\">{}{}</section>\n<section class=\"page\">{}{}</section>\n</body></html>\n",
-        escape(&headline(diagnosis)),
+        escape(&clause(diagnosis)),
         header("verdict"),
         brief::page(machine, diagnosis, details),
         header("evidence"),

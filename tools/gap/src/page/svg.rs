@@ -57,6 +57,15 @@ impl Svg {
         );
     }
 
+    /// A line around something, whatever its colour.
+    pub(super) fn ring(&mut self, at: [f64; 2], size: [f64; 2], corner: f64, colour: &str) {
+        let _ = write!(
+            self.body,
+            r#"<rect x="{:.1}" y="{:.1}" width="{:.1}" height="{:.1}" rx="{corner:.1}" fill="none" stroke="{colour}" stroke-width="3"/>"#,
+            at[0], at[1], size[0], size[1]
+        );
+    }
+
     pub(super) fn circle(&mut self, at: [f64; 2], radius: f64, fill: &str, outline: &str) {
         let _ = write!(
             self.body,

@@ -6,7 +6,8 @@ use super::caption::{gap_over_noise, how_to_read_shares, share_of, small_gaps};
 use super::size::each;
 use super::svg::escape;
 use super::words::{
-    by_share, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks, without_a_name,
+    by_share, capitalised, elsewhere, is_elsewhere, judged_on, on, percent, short, shrinks,
+    without_a_name,
 };
 use crate::diagnosis::{Cause, Details, Diagnosis, Place, Shrink};
 
@@ -45,11 +46,6 @@ fn places_caption(diagnosis: &Diagnosis) -> String {
     let more = [how_to_read_shares(diagnosis.share_of), small_gaps(diagnosis)];
     let all: Vec<&str> = core::iter::once(&*told).chain(more.into_iter().flatten()).collect();
     format!("<p class=\"small\">{}</p>", escape(&all.join(" ")))
-}
-
-fn capitalised(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The likeliest causes.

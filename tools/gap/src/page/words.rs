@@ -68,6 +68,12 @@ pub(super) fn is_elsewhere(cause: &Cause) -> bool {
     cause.scopes.len() > 1 && cause.probability >= WORTH_TELLING
 }
 
+/// As at the beginning of a sentence.
+pub(super) fn capitalised(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// A share of one in percent; never a certainty that a finite log cannot give, for or against.
 pub(super) fn percent(share: f64) -> String {
     if share > 0.99 && share < 1.01 {

@@ -17,6 +17,7 @@ mod horizon;
 mod html;
 mod machine_view;
 mod named;
+mod rows;
 mod size;
 mod strip;
 mod sureness;

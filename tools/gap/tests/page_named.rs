@@ -6,6 +6,7 @@ mod made_up;
 
 use answer::{diagnosis, page, page_of};
 use xt28_gap::diagnosis::{Diagnosis, Place, Spot, Verdict};
+use xt28_gap::page::text;
 use xt28_sim::effects::{Block, find};
 
 /// The heading of a page.
@@ -84,4 +85,24 @@ fn the_bar_names_the_runner_up_where_that_is_all_there_is_beside() {
     assert!(page_of(&two).contains("32 % leakage-drift</text>"));
     (two.causes[0].probability, two.causes[1].probability) = (0.65, 0.20);
     assert!(page_of(&two).contains("32 % other causes</text>"));
+}
+
+#[test]
+fn gaps_are_listed_from_half_a_floor_on_with_the_one_named_and_the_rest_in_a_line() {
+    let mut unknown = diagnosis(Verdict::Unknown);
+    unknown.places =
+        (0..12).map(|k| place("arm", Block::Arms, "FR", &format!("s{k}"), 2.0)).collect();
+    unknown.places.push(place("bus", Block::Bus, "all", "named", 0.2));
+    unknown.places.push(place("bus", Block::Bus, "all", "quiet", 0.4));
+    unknown.unexplained = Some(unknown.places[12].spot.clone());
+    let (words, page) = (text(&unknown), page_of(&unknown));
+    for (signal, is_there) in [("s0", true), ("s7", true), ("s8", false), ("named", true)] {
+        assert_eq!(words.contains(&format!(" {signal} ")), is_there, "{signal}: {words}");
+        assert_eq!(page.contains(&format!("<td>{signal}</td>")), is_there, "{signal}");
+    }
+    let row = words.lines().find(|line| line.starts_with("all else: 5 signals")).unwrap();
+    assert!(row.ends_with("up to 2.00       50 %"), "{row}");
+    assert!(page.contains("all else: 5 signals"));
+    let head = words.lines().find(|line| line.starts_with("where")).unwrap();
+    assert_eq!(row.chars().count(), head.chars().count(), "the columns are one below the other");
 }

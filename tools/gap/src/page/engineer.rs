@@ -25,7 +25,7 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
         if details.since_s > 0.0 { "; the line is where the causes begin" } else { "" }
     );
     if !diagnosis.places.is_empty() {
-        let _ = write!(out, "<h2>Where: the largest gaps</h2>{}", table::places(diagnosis));
+        let _ = write!(out, "<h2>Where: the gaps that say most</h2>{}", table::places(diagnosis));
     }
     let _ = write!(
         out,

@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use super::caption::{gap_over_noise, how_to_read_shares, share_of, small_gaps};
+use super::rows::Rows;
 use super::size::each;
 use super::svg::escape;
 use super::words::{
@@ -13,10 +14,8 @@ use crate::diagnosis::{Cause, Details, Diagnosis, Place, Shrink};
 
 /// Causes listed.
 const CAUSES: usize = 6;
-/// Places listed.
-const PLACES: usize = 8;
 
-/// The largest gaps, with what each has to do with that of the whole machine.
+/// The gaps that say most, with what each has to do with that of the whole machine.
 pub(super) fn places(diagnosis: &Diagnosis) -> String {
     let row = |place: &Place| {
         format!(
@@ -28,7 +27,13 @@ pub(super) fn places(diagnosis: &Diagnosis) -> String {
             percent(place.share)
         )
     };
-    let rows: String = diagnosis.places.iter().take(PLACES).map(row).collect();
+    let rows = Rows::of(diagnosis);
+    let rest = rows.rest().map_or_else(String::new, |[count, gap, share]| {
+        format!(
+            "<tr><td colspan=\"3\">{count}</td><td class=\"number\">{gap}</td><td class=\"number\">{share}</td></tr>"
+        )
+    });
+    let rows: String = rows.shown.into_iter().map(row).chain([rest]).collect();
     format!(
         "<table><thead><tr><th>block</th><th>wheels</th><th>signal</th><th>gap over noise</th><th>share</th></tr></thead><tbody>{rows}</tbody></table>\
          {}",

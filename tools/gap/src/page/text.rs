@@ -5,6 +5,7 @@ use core::fmt::Write as _;
 use super::ahead::{after_that, how_well, purpose};
 use super::caption::{how_to_read_shares, share_of, small_gaps};
 use super::headline;
+use super::rows::Rows;
 use super::size::{at_wheels, sizes};
 use super::words::{elsewhere, is_elsewhere, judged_on, percent, short, shrink, without_a_name};
 use crate::diagnosis::{Cause, Diagnosis};
@@ -13,8 +14,6 @@ use crate::diagnosis::{Cause, Diagnosis};
 const LISTED_ABOVE: f64 = 0.01;
 /// Causes that are listed in any case.
 const LISTED_ANYWAY: usize = 3;
-/// Blocks and regimes listed.
-const PLACES: usize = 8;
 
 /// Verdict, place, causes, shrink, next test and reservations, a paragraph each.
 #[must_use]
@@ -78,7 +77,8 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         "\n{:<19} {:<6} {:<37} {:>14} {:>10}",
         "where", "wheels", "signal", "gap over noise", "share"
     );
-    for place in diagnosis.places.iter().take(PLACES) {
+    let rows = Rows::of(diagnosis);
+    for place in &rows.shown {
         let _ = writeln!(
             out,
             "{:<19} {:<6} {:<37} {:>14} {:>10}",
@@ -88,6 +88,9 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
             short(place.gap_over_noise),
             percent(place.share)
         );
+    }
+    if let Some([count, gap, share]) = rows.rest() {
+        let _ = writeln!(out, "{count:<64} {gap:>14} {share:>10}");
     }
     let _ = writeln!(out, "  {}", share_of(diagnosis.share_of));
     for sentence in

@@ -111,6 +111,9 @@ fn what_no_log_tests_asks_for_the_drive_that_tests_most_of_it() {
         effect: find(effect).unwrap(),
         lacks: String::new(),
         manoeuvre: manoeuvre.to_owned(),
+        more: None,
+        fit: Vec::new(),
+        in_part: false,
     };
     let not_testable = vec![
         lacking("valve-lag", "single-arm"),

@@ -77,13 +77,51 @@ impl Shown {
         needs(effect).iter().all(|need| need.unmet(&did).is_none())
     }
 
+    /// Whether what was done shows an effect at these wheels by itself: what one arm alone has to do, one did.
+    pub(super) fn tests(&self, effect: &Effect, scope: Scope) -> bool {
+        let mut of_any = needs(effect).iter().filter(|need| need.is_of_any_arm());
+        self.has(effect, scope) && of_any.all(|need| need.unmet(&self.0).is_none())
+    }
+
+    /// Whether it shows an effect at every wheel.
+    pub(super) fn tests_everywhere(&self, effect: &Effect) -> bool {
+        needs(effect).iter().all(|need| need.unmet(&self.0).is_none())
+    }
+
+    /// What was done in these runs and in those of `other`.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        Self(self.0.with(&other.0))
+    }
+
     /// The effects of `catalogue` that cannot show at every wheel, each with what they lack and the
-    /// scripted manoeuvre that has it.
+    /// scripted manoeuvre that has it; `is_driven` says of which manoeuvres these runs are.
+    pub(super) fn not_testable_in(
+        &self,
+        catalogue: &[&'static Effect],
+        is_driven: impl Fn(&str) -> bool,
+    ) -> Vec<NotTestable> {
+        let mut all = self.not_testable(catalogue);
+        for one in all.iter_mut().filter(|one| is_driven(&one.manoeuvre)) {
+            let unmet = needs(one.effect).iter().find(|need| need.unmet(&self.0).is_some());
+            one.more = unmet.map(|need| need.more());
+        }
+        all
+    }
+
+    /// The same without a word on what was driven.
     fn not_testable(&self, catalogue: &[&'static Effect]) -> Vec<NotTestable> {
         let judge = |effect: &&'static Effect| {
             let mut all = needs(effect).iter();
             let (need, lacks) = all.find_map(|need| Some((need, need.unmet(&self.0)?)))?;
-            Some(NotTestable { effect, lacks, manoeuvre: need.manoeuvre().to_owned() })
+            let at_some = |wheel: Wheel| self.tests(effect, Scope::Wheel(wheel));
+            Some(NotTestable {
+                effect,
+                lacks,
+                manoeuvre: need.manoeuvre().to_owned(),
+                more: None,
+                fit: Vec::new(),
+                in_part: effect.has_scope() && Wheel::ALL.into_iter().any(at_some),
+            })
         };
         catalogue.iter().filter_map(judge).collect()
     }

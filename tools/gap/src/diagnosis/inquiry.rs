@@ -63,6 +63,14 @@ impl FieldRun {
         self
     }
 
+    /// Whether it is of the scripted drive `name`, by what is said of it or by its own name.
+    #[must_use]
+    pub(super) fn is_of_drive(&self, name: &str) -> bool {
+        let told = self.scenario.clone().unwrap_or_else(|| file_name(self.log.name()));
+        let told = told.to_lowercase().replace('_', "-");
+        told.split('.').next().is_some_and(|stem| stem.ends_with(name))
+    }
+
     /// What it is called: its log's file, without folders where it needs none.
     #[must_use]
     pub fn file(&self) -> String {

@@ -11,19 +11,20 @@ mod causes;
 mod notes;
 mod objection;
 mod places;
+mod untested;
 
 use super::candidates::Candidate;
 use super::evidence::{Echo, Left};
-use super::excitation::not_testable;
 use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
 use super::scales::{Chances, Grounds, Scales};
-use super::verdict::{Diagnosis, NotTestable, Verdict};
+use super::verdict::{Diagnosis, Verdict};
 use beginning::is_told;
 use causes::causes;
 pub(super) use causes::temperature;
 use notes::notes;
 use places::{places, unexplained};
+use untested::tell_untested;
 
 /// What the logs say of every hypothesis.
 #[derive(Clone, Debug, Default)]
@@ -122,14 +123,11 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         probability_unseen: chances.unseen,
         grounds,
         held_out_runs: held_out_runs(inquiry),
-        not_testable: not_shown(inquiry, |run| run.fit),
         log_faults: log_faults(inquiry),
         ..Diagnosis::of(verdict, causes)
     };
-    // What is stood by has been tested.
-    let stood: Vec<_> = diagnosis.stood_by().map(|cause| cause.effect.name).collect();
-    diagnosis.not_testable.retain(|one| !stood.contains(&one.effect.name));
-    diagnosis.notes = notes(inquiry, findings, verdict, &stood);
+    tell_untested(&mut diagnosis, inquiry);
+    diagnosis.notes = notes(inquiry, findings, verdict);
     diagnosis
 }
 
@@ -142,12 +140,6 @@ fn likeliest(chances: &Chances) -> Verdict {
     } else {
         Verdict::Effect
     }
-}
-
-/// The effects that those runs cannot show that `are` asked for.
-fn not_shown(inquiry: &Inquiry, are: impl Fn(&FieldRun) -> bool + Clone) -> Vec<NotTestable> {
-    let runs = inquiry.runs.iter().filter(|run| are(run)).map(|run| &run.signals);
-    not_testable(runs, &inquiry.machine, &inquiry.catalogue)
 }
 
 /// Every fault of every log.

@@ -216,6 +216,14 @@ impl Estimate {
         if reach > 0.0 { reach / NINETY } else { f64::INFINITY }
     }
 
+    /// The same as logs that do not show it tell it: it may be anything that the law is made for.
+    #[must_use]
+    pub(super) fn untold(mut self, parameter: &Parameter) -> Self {
+        let [_, low, high] = &mut self.value;
+        [*low, *high] = parameter.range;
+        self
+    }
+
     /// The same with all of another's interval in its own.
     #[must_use]
     pub(super) fn reaching(mut self, other: &Self) -> Self {
@@ -300,6 +308,24 @@ pub struct NotTestable {
     pub lacks: String,
     /// Scripted manoeuvre that would show it.
     pub manoeuvre: String,
+    /// What that needs more of than it had, where it was driven and fitted.
+    pub more: Option<String>,
+    /// Runs held out that have what the fitted ones lack, by file name: to fit them shows it.
+    pub fit: Vec<String>,
+    /// Whether some wheels are tested all the same.
+    pub in_part: bool,
+}
+
+impl NotTestable {
+    /// What to do to have it tested: "fit run-6", "drive straight".
+    #[must_use]
+    pub fn remedy(&self) -> String {
+        match (&self.fit[..], &self.more) {
+            ([], None) => format!("drive {}", self.manoeuvre),
+            ([], Some(more)) => format!("drive {} again, {more}", self.manoeuvre),
+            (runs, _) => format!("fit {}", runs.join(" and ")),
+        }
+    }
 }
 
 fn as_text<T: ToString, S: Serializer>(value: &T, to: S) -> Result<S::Ok, S::Error> {

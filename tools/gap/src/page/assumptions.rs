@@ -2,6 +2,7 @@
 
 use super::ahead::{after_that, how_well, purpose};
 use super::svg::escape;
+use super::words::capitalised;
 use crate::diagnosis::{Details, Diagnosis, Knob};
 
 /// Faults of logs listed.
@@ -65,7 +66,8 @@ pub(super) fn settles(diagnosis: &Diagnosis) -> String {
         items.push("Which drive would tell causes apart was not asked.".to_owned());
     }
     items.extend(diagnosis.not_testable.iter().map(|one| {
-        format!("{} cannot be tested: {}. Drive {}.", one.effect.name, one.lacks, one.manoeuvre)
+        let how = if one.in_part { "is not tested at every wheel" } else { "cannot be tested" };
+        format!("{} {how}: {}. {}.", one.effect.name, one.lacks, capitalised(&one.remedy()))
     }));
     if diagnosis.not_testable.is_empty() {
         items.push("Every effect of the catalogue is tested by these runs.".to_owned());

@@ -54,8 +54,9 @@ pub fn text(diagnosis: &Diagnosis) -> String {
             "\nnot testable with these logs, or not at every wheel (`xt28 gap drive` writes each drive)"
         );
         for one in &diagnosis.not_testable {
-            let _ =
-                writeln!(out, "  {:<22} {}; drive {}", one.effect.name, one.lacks, one.manoeuvre);
+            let part = if one.in_part { "not at every wheel: " } else { "" };
+            let (lacks, remedy) = (&one.lacks, one.remedy());
+            let _ = writeln!(out, "  {:<22} {part}{lacks}; {remedy}", one.effect.name);
         }
     }
     if !diagnosis.notes.is_empty() {
@@ -74,14 +75,14 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
     }
     let _ = writeln!(
         out,
-        "\n{:<19} {:<6} {:<37} {:>14} {:>10}",
+        "\n{:<19} {:<6} {:<41} {:>14} {:>10}",
         "where", "wheels", "signal", "gap over noise", "share"
     );
     let rows = Rows::of(diagnosis);
     for place in &rows.shown {
         let _ = writeln!(
             out,
-            "{:<19} {:<6} {:<37} {:>14} {:>10}",
+            "{:<19} {:<6} {:<41} {:>14} {:>10}",
             place.spot.part,
             place.spot.scope,
             place.spot.residual,
@@ -90,7 +91,7 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
         );
     }
     if let Some([count, gap, share]) = rows.rest() {
-        let _ = writeln!(out, "{count:<64} {gap:>14} {share:>10}");
+        let _ = writeln!(out, "{count:<68} {gap:>14} {share:>10}");
     }
     let _ = writeln!(out, "  {}", share_of(diagnosis.share_of));
     for sentence in

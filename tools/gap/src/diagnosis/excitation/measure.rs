@@ -94,6 +94,25 @@ impl Excitation {
         }
     }
 
+    /// What was done in these runs and in those of `other`.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let mut judged_s = self.judged_s.clone();
+        for (signal, more_s) in &other.judged_s {
+            *judged_s.entry(*signal).or_insert(0.0) += more_s;
+        }
+        Self {
+            arms: PerWheel::from_fn(|w| self.arms[w].with(other.arms[w])),
+            openings: self.openings.max(other.openings),
+            steers_rad: self.steers_rad.max(other.steers_rad),
+            throttle: self.throttle.max(other.throttle),
+            throttle_step: self.throttle_step.max(other.throttle_step),
+            rolls_m: self.rolls_m.max(other.rolls_m),
+            commands: self.commands + other.commands,
+            fixes: self.fixes + other.fixes,
+            judged_s,
+        }
+    }
+
     /// The same as far as arms at `scope` are concerned: the others did whatever one asks.
     pub(super) fn at(&self, scope: Scope) -> Self {
         let arms =
@@ -114,6 +133,20 @@ impl ArmUse {
         judged_s: f64::INFINITY,
         controlled_s: f64::INFINITY,
     };
+
+    /// What it did in these runs and in others.
+    fn with(self, other: Self) -> Self {
+        Self {
+            moves_m: self.moves_m.max(other.moves_m),
+            turns_m: self.turns_m.max(other.turns_m),
+            moves_standing_m: self.moves_standing_m.max(other.moves_standing_m),
+            load_range_n: self.load_range_n.max(other.load_range_n),
+            holds_s: self.holds_s.max(other.holds_s),
+            unloaded_s: self.unloaded_s.max(other.unloaded_s),
+            judged_s: self.judged_s + other.judged_s,
+            controlled_s: self.controlled_s + other.controlled_s,
+        }
+    }
 }
 
 /// For how long each signal of `generator` could be judged in a run, s.
@@ -172,16 +205,7 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, machine: &Machine, wheel: Wh
             judged_s: judged_s(Generator::ArmStroke(wheel)),
             controlled_s: judged_s(Generator::ArmEcu(wheel)),
         };
-        all = ArmUse {
-            moves_m: all.moves_m.max(one.moves_m),
-            turns_m: all.turns_m.max(one.turns_m),
-            moves_standing_m: all.moves_standing_m.max(one.moves_standing_m),
-            load_range_n: all.load_range_n.max(one.load_range_n),
-            holds_s: all.holds_s.max(one.holds_s),
-            unloaded_s: all.unloaded_s.max(one.unloaded_s),
-            judged_s: all.judged_s + one.judged_s,
-            controlled_s: all.controlled_s + one.controlled_s,
-        };
+        all = all.with(one);
     }
     all
 }

@@ -116,6 +116,44 @@ impl Need {
         (!names.is_empty()).then(|| format!("{arms} could be judged for less than {JUDGED_S:.0} s"))
     }
 
+    /// What its manoeuvre needs more of where it was driven and had too little, after "drive it again,".
+    pub(super) fn more(self) -> String {
+        let mm = |m: f64| m * 1e3;
+        match self {
+            Self::ArmsMove(m) => format!("every arm through {:.0} mm", mm(m)),
+            Self::ArmsTurn(m) => format!("every arm through {:.0} mm both out and in", mm(m)),
+            Self::ArmsMoveStanding(m) => {
+                format!("an arm through {:.0} mm while the machine stands", mm(m))
+            }
+            Self::LoadsDiffer(n) => {
+                format!("farther, until the load of every arm changes by {:.0} kN", n / 1e3)
+            }
+            Self::ArmsHold(s) => format!("with a valve shut under load for {s:.0} s"),
+            Self::ArmsUnloaded(s) => format!("with an arm free and its valve shut for {s:.0} s"),
+            Self::SeveralArms(sum) => format!("with valves open by {sum:.1} together"),
+            Self::ArmsJudged => "with oil in every chamber".to_owned(),
+            Self::ArmsControlled => format!("in manual position for {JUDGED_S:.0} s"),
+            Self::Steers(rad) => {
+                format!("the front joint through {:.0} deg while rolling", rad.to_degrees().ceil())
+            }
+            Self::ThrottleSteps(least) => {
+                format!("with a step of the throttle by {:.0} %", least * 100.0)
+            }
+            Self::Throttle(least) => format!("with {:.0} % of throttle or more", least * 100.0),
+            Self::Rolls(m) => format!("for {m:.0} m or more"),
+            Self::Fixes => "with a receiver that is logged".to_owned(),
+            Self::Judged(signal) => {
+                format!("on level ground or a known slope, until {signal} can be judged")
+            }
+            Self::Commands => "with commands that change".to_owned(),
+        }
+    }
+
+    /// Whether one arm that did it is enough, whichever it is.
+    pub(super) const fn is_of_any_arm(self) -> bool {
+        matches!(self, Self::ArmsMoveStanding(_) | Self::ArmsHold(_) | Self::ArmsUnloaded(_))
+    }
+
     /// The scripted manoeuvre that has it.
     pub(super) const fn manoeuvre(self) -> &'static str {
         match self {

@@ -10,25 +10,19 @@ use super::super::signals::{PERIOD_S, command_period_s};
 use super::super::verdict::Verdict;
 use super::super::wheel_order::axles_alike;
 use super::objection::Objection;
-use super::{Findings, held_out_runs, not_shown};
+use super::{Findings, held_out_runs};
 
 /// A gap beyond this is no other machine's, but may be another wheel's.
 const WHEELS_APART: f64 = 5.0;
 /// Share of what there is to explain below which no cause has a name that is worth a look.
 const FAIR_SHARE: f64 = 0.2;
 
-/// The notes on `findings` that came to this verdict; `stood` are the names of the causes that it stands by.
-pub(super) fn notes(
-    inquiry: &Inquiry,
-    findings: &Findings,
-    verdict: Verdict,
-    stood: &[&str],
-) -> Vec<String> {
+/// The notes on `findings` that came to this verdict.
+pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
     let mut notes = Vec::new();
     if held_out_runs(inquiry).is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
-    notes.extend(shown_by_held_alone(inquiry, stood));
     notes.extend(commanded_seldom(inquiry));
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
@@ -60,18 +54,6 @@ fn commanded_seldom(inquiry: &Inquiry) -> Option<String> {
         format!(
             "commands come {told}, and not every 10 ms: their loss and lateness are judged by that"
         )
-    })
-}
-
-/// Effects that no run that was fitted can show, but for what is there beyond doubt all the same.
-fn shown_by_held_alone(inquiry: &Inquiry, stood: &[&str]) -> Option<String> {
-    let shown = not_shown(inquiry, |_| true);
-    let not_fitted = not_shown(inquiry, |run| run.fit).into_iter().map(|one| one.effect.name);
-    let can_show = |name: &&str| shown.iter().all(|one| one.effect.name != *name);
-    let held: Vec<_> = not_fitted.filter(can_show).filter(|name| !stood.contains(name)).collect();
-    (!held.is_empty()).then(|| {
-        let names = held.join(", ");
-        format!("only runs that were held out can show {names}: fit one of them to have it judged")
     })
 }
 

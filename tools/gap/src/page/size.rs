@@ -1,6 +1,6 @@
 //! How large a cause is, as a person says it: to which side it is off, in units that one reads.
 
-use xt28_sim::effects::{Block, Effect};
+use xt28_sim::effects::{Block, Effect, Parameter};
 
 use super::unit;
 use super::words::on;
@@ -8,6 +8,11 @@ use crate::diagnosis::{Cause, Estimate};
 
 /// A parameter that has two sides: what is said before its size, and after one above and one below nothing.
 type Sides = (&'static str, [&'static str; 2]);
+
+/// Share of a parameter's range from which on an interval says nothing.
+const NEARLY_ALL: f64 = 0.9;
+/// Share of it within which an estimate is at its end.
+const AT_LIMIT: f64 = 1e-3;
 
 /// A reading that is too large or too small.
 const READING: Sides = ("reads ", ["too much", "too little"]);
@@ -48,20 +53,48 @@ pub(super) fn each(cause: &Cause) -> Vec<String> {
 /// One parameter of `effect`: "reads 7.3 bar too little (3.3 to 11.4)", "delay 210 ms (190 to 230)".
 fn told(effect: &Effect, estimate: &Estimate) -> String {
     let (name, unit, per_si) = unit::of(estimate.name);
-    let Some(sides) = sides(effect, estimate.name) else {
+    let sides = sides(effect, estimate.name);
+    let parameter = effect.parameter(estimate.name);
+    if parameter.is_some_and(|parameter| is_untold(parameter, estimate)) {
+        let whose = match sides {
+            Some((before, [one, other])) => format!("{before}{one} or {other}"),
+            None if name.is_empty() => "size".to_owned(),
+            None => name,
+        };
+        return format!("{whose}: not told by these logs");
+    }
+    let limit = if parameter.is_some_and(|parameter| is_at_limit(parameter, estimate)) {
+        ", at its limit"
+    } else {
+        ""
+    };
+    let Some(sides) = sides else {
         let values = estimate.value.map(|value| value * per_si);
         let decimals = unit::decimals(values);
         let [best, low, high] = values.map(|value| number(value, decimals));
         let named = if name.is_empty() { name } else { name + " " };
-        return format!("{named}{best}{unit} ({low} to {high})");
+        return format!("{named}{best}{unit} ({low} to {high}{limit})");
     };
     // What a factor makes a reading off by is a share of it.
     let (nothing, unit) = if estimate.name == "factor" { (1.0, " %") } else { (0.0, unit) };
-    beside_nothing(estimate.value.map(|value| (value - nothing) * per_si), sides, unit)
+    beside_nothing(estimate.value.map(|value| (value - nothing) * per_si), sides, unit, limit)
+}
+
+/// Whether its interval is as good as all that the law is made for.
+fn is_untold(parameter: &Parameter, estimate: &Estimate) -> bool {
+    let ([least, most], [_, low, high]) = (parameter.range, estimate.value);
+    high - low >= NEARLY_ALL * (most - least)
+}
+
+/// Whether it went as far as it may, and might have gone farther; what is not there at all did not.
+fn is_at_limit(parameter: &Parameter, estimate: &Estimate) -> bool {
+    let [least, most] = parameter.range;
+    let near = |limit: f64| (estimate.value[0] - limit).abs() <= AT_LIMIT * (most - least);
+    [least, most].into_iter().any(near) && !near(parameter.neutral)
 }
 
 /// A size with its side in words, which the interval has again where it reaches to the other.
-fn beside_nothing(values: [f64; 3], (before, sides): Sides, unit: &str) -> String {
+fn beside_nothing(values: [f64; 3], (before, sides): Sides, unit: &str, limit: &str) -> String {
     let decimals = unit::decimals(values);
     let size = |value: f64| number(value.abs(), decimals);
     let side = |value: f64| sides[usize::from(value < 0.0)];
@@ -72,7 +105,7 @@ fn beside_nothing(values: [f64; 3], (before, sides): Sides, unit: &str) -> Strin
         let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
         format!("{} to {}", size(near), size(far))
     };
-    format!("{before}{}{unit} {} ({interval})", size(best), side(best))
+    format!("{before}{}{unit} {} ({interval}{limit})", size(best), side(best))
 }
 
 /// With so many decimals; what is left of a negative number that rounds to none is no minus.
@@ -111,6 +144,25 @@ mod tests {
         }
         let tilted = said("imu-offset", "pitch_rad", [-0.02, -0.025, -0.015]);
         assert_eq!(tilted, "reads 1.1 deg nose down (0.9 to 1.4)");
+    }
+
+    #[test]
+    fn what_the_logs_do_not_tell_has_no_size_and_what_could_go_no_farther_says_so() {
+        for (effect, name, value, words) in [
+            ("com-shift", "z_m", [-0.03, -0.7, 0.7], "up or down: not told by these logs"),
+            ("pressure-scale", "rod_share", [0.76, 0.0, 1.0], "rod share: not told by these logs"),
+            ("valve-gain", "factor", [1.2, 0.1, 3.0], "size: not told by these logs"),
+            (
+                "lock-damping",
+                "factor",
+                [5.0, 4.0, 5.0],
+                "500 % of nominal (400 to 500, at its limit)",
+            ),
+            ("com-shift", "z_m", [0.7, 0.5, 0.7], "700 mm up (500 to 700, at its limit)"),
+            ("arm-delay", "delay_s", [0.0, 0.0, 0.012], "delay 0 ms (0 to 12)"),
+        ] {
+            assert_eq!(said(effect, name, value), words);
+        }
     }
 
     #[test]

@@ -39,6 +39,7 @@ mod search;
 mod signals;
 mod speed_scale;
 mod stands;
+mod stroke_scale;
 mod unshrunk;
 mod verdict;
 mod wheel_order;
@@ -72,6 +73,7 @@ pub use search::search;
 pub use signals::{DT_S, Samples, Signals};
 pub(crate) use signals::{needed, sampled};
 pub use speed_scale::{SpeedScale, speed_scale};
+pub use stroke_scale::{StrokeScale, stroke_scale};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
     Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,

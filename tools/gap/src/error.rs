@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use xt28_bus::candump::ReadError;
 
 use crate::diagnosis::{
-    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, Swap, SwappedChambers, WheelScale,
+    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, StrokeScale, Swap,
+    SwappedChambers, WheelScale,
 };
 
 /// Why a log cannot be read or replayed.
@@ -288,9 +289,18 @@ pub enum GapError {
         /// Which, by how much, and what to look at.
         scale: JointScale,
     },
+    /// A stroke is not on the scale of its target.
+    #[error(
+        "the strokes are not what their targets make them: {scale}; check unit and factor of stroke and target in DBC and mapping"
+    )]
+    StrokeScale {
+        /// Which, and by how much.
+        scale: StrokeScale,
+    },
     /// Roll or pitch is not on the scale of the strokes.
     #[error(
-        "the machine's attitude is not what its strokes make it: {scale} what they say; check unit, factor and sign of it in DBC and mapping"
+        "the machine's attitude is not what its strokes make it: {scale} what they say; {}",
+        scale.to_mend()
     )]
     AttitudeScale {
         /// Which, and by how much.

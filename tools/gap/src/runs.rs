@@ -15,7 +15,7 @@ use xt28_sim::Terrain;
 
 use crate::diagnosis::{
     FieldRun, Inquiry, Signals, attitude_scale, joint_scale, load_scale, odd_heading, speed_scale,
-    swapped_chambers, swapped_wheels, wheel_scale,
+    stroke_scale, swapped_chambers, swapped_wheels, wheel_scale,
 };
 use crate::{About, Decoder, FieldLog, GapError};
 
@@ -178,14 +178,26 @@ impl RunSet {
     ///
     /// # Errors
     /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::WheelScale`], [`GapError::SpeedScale`],
-    /// [`GapError::HeadingSense`], [`GapError::JointScale`] and [`GapError::AttitudeScale`].
+    /// [`GapError::HeadingSense`], [`GapError::JointScale`], [`GapError::StrokeScale`] and
+    /// [`GapError::AttitudeScale`].
     pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+        Self::ensure_pressures_agreeing(runs)?;
+        Self::ensure_motions_agreeing(runs)
+    }
+
+    /// The same of what the chambers' pressures say, which take no heed of which wheel's stroke is whose.
+    fn ensure_pressures_agreeing(runs: &[Signals]) -> Result<(), GapError> {
         if let Some(swapped) = swapped_chambers(runs) {
             return Err(GapError::ChamberOrder { swapped });
         }
         if let Some(scale) = load_scale(runs) {
             return Err(GapError::LoadScale { scale });
         }
+        Ok(())
+    }
+
+    /// The same of wheels, joints, strokes and attitude.
+    fn ensure_motions_agreeing(runs: &[Signals]) -> Result<(), GapError> {
         if let Some(scale) = wheel_scale(runs) {
             return Err(GapError::WheelScale { scale });
         }
@@ -197,6 +209,9 @@ impl RunSet {
         }
         if let Some(scale) = joint_scale(runs) {
             return Err(GapError::JointScale { scale });
+        }
+        if let Some(scale) = stroke_scale(runs) {
+            return Err(GapError::StrokeScale { scale });
         }
         attitude_scale(runs).map_or(Ok(()), |scale| Err(GapError::AttitudeScale { scale }))
     }
@@ -220,11 +235,14 @@ impl RunSet {
             })
             .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
-        Self::ensure_agreeing(&signals)?;
+        Self::ensure_pressures_agreeing(&signals)?;
+        // Before attitude is held against strokes: wheels in another order make a machine that leans the other
+        // way, and are no fault of the unit that says so.
         match swapped_wheels(&signals) {
-            Some(swap) if !any_order => Err(GapError::WheelOrder { swap }),
-            _ => Ok(runs),
+            Some(swap) if !any_order => return Err(GapError::WheelOrder { swap }),
+            _ => Self::ensure_motions_agreeing(&signals)?,
         }
+        Ok(runs)
     }
 }
 

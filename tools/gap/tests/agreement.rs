@@ -42,8 +42,45 @@ fn an_attitude_of_the_wrong_sign_is_told_to_be_so() {
     let runs = both();
     let roll = scaled(runs.clone(), |s| times(&mut s.roll_rad, -1.0)).unwrap_err();
     assert!(roll.contains("roll -") && !roll.contains("pitch "), "{roll}");
+    let sensors = "of it and of the strokes in DBC and mapping, or left and right are exchanged";
+    assert!(roll.contains(sensors), "{roll}");
     let pitch = scaled(runs.clone(), |s| times(&mut s.pitch_rad, -1.0)).unwrap_err();
     assert!(pitch.contains("pitch -") && !pitch.contains("roll "), "{pitch}");
+    assert!(pitch.ends_with("or front and rear are exchanged"), "{pitch}");
+}
+
+#[test]
+fn strokes_of_another_unit_are_told_by_their_names_and_not_as_an_attitude() {
+    let runs = both();
+    for factor in [10.0, 0.1] {
+        let all = scaled(runs.clone(), |s| {
+            s.stroke_m.0.iter_mut().for_each(|stroke| times(stroke, factor));
+        });
+        let told = all.unwrap_err();
+        assert!(told.contains("the strokes are not what their targets"), "{told}");
+        assert!(Wheel::ALL.iter().all(|w| told.contains(&format!("stroke.{w} "))), "{told}");
+        let one = scaled(runs.clone(), |s| times(&mut s.stroke_m[Wheel::Ml], factor)).unwrap_err();
+        assert!(one.contains("stroke.ML ") && !one.contains("stroke.MR "), "{one}");
+    }
+}
+
+/// As far as effects reach, and an arm that does not move at all.
+#[test]
+fn slow_and_stuck_arms_and_sensors_that_are_off_are_left_to_the_diagnosis() {
+    let of = |change: &dyn Fn(&mut Effects)| {
+        let mut effects = Effects::default();
+        change(&mut effects);
+        scaled(["arms", "drive"].map(|name| own_logs::run(name, &effects, true).signals), |_| ())
+    };
+    let every = |change: fn(&mut Effects, Wheel)| {
+        move |effects: &mut Effects| Wheel::ALL.into_iter().for_each(|w| change(effects, w))
+    };
+    assert_eq!(of(&every(|e, w| e.arms[w].valve_gain.factor = 0.1)), Ok(()));
+    assert_eq!(of(&every(|e, w| e.arms[w].valve_gain.factor = 3.0)), Ok(()));
+    assert_eq!(of(&every(|e, w| e.arms[w].delay.delay_s = 1.0)), Ok(()));
+    assert_eq!(of(&every(|e, w| e.wheels[w].stroke_scale.factor = 0.5)), Ok(()));
+    let stuck = scaled(both(), |s| s.stroke_m[Wheel::Fr].fill(0.02));
+    assert!(stuck.as_ref().is_err_and(|told| !told.contains("strokes are not")) || stuck.is_ok());
 }
 
 #[test]

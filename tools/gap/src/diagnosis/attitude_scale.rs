@@ -74,6 +74,20 @@ fn times<'a>(runs: impl Iterator<Item = &'a Sways>) -> Option<f64> {
     along.times().filter(|_| strokes_rad > SWAYS_RAD)
 }
 
+impl AttitudeScale {
+    /// What to look at: both sensors, and the order of wheels where an angle goes the other way.
+    #[must_use]
+    pub fn to_mend(&self) -> String {
+        let turned =
+            |angle: &str| self.angles.iter().any(|(name, times)| *name == angle && *times < 0.0);
+        let orders = [("roll", "left and right"), ("pitch", "front and rear")];
+        let orders = orders.into_iter().filter(|(angle, _)| turned(angle));
+        let orders: String =
+            orders.map(|(_, wheels)| format!(", or {wheels} are exchanged")).collect();
+        format!("check unit, factor and sign of it and of the strokes in DBC and mapping{orders}")
+    }
+}
+
 impl fmt::Display for AttitudeScale {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let each = self.angles.iter().map(|(name, times)| format!("{name} {times:.2} times"));

@@ -41,16 +41,26 @@ pub struct Swap {
 /// commands do not tell.
 #[must_use]
 pub fn swapped_wheels(runs: &[Signals]) -> Option<Swap> {
-    let targets = |s: &Signals, w: Wheel| {
-        let mut followed = Lag::new(s.target_stroke_m[w].first().copied().unwrap_or_default());
-        s.target_stroke_m[w].iter().map(|t| followed.step(*t, FOLLOWS_S, DT_S)).collect()
-    };
+    let targets = |s: &Signals, w: Wheel| followed(s, w);
     let strokes = |s: &Signals, w: Wheel| s.stroke_m[w].clone();
     let openings = |s: &Signals, w: Wheel| s.opening[w].clone();
     let rates = |s: &Signals, w: Wheel| s.stroke_rate_m_s[w].clone();
     compare(runs, ["target", "stroke"], &targets, &strokes)
         .or_else(|| compare(runs, ["valve current", "stroke"], &openings, &rates))
         .or_else(|| mispressed(runs))
+}
+
+/// What a stroke should be on its way to its target, m.
+pub(super) fn followed(s: &Signals, wheel: Wheel) -> Samples {
+    let targets = &s.target_stroke_m[wheel];
+    let mut followed = Lag::new(targets.first().copied().unwrap_or_default());
+    targets.iter().map(|target| followed.step(*target, FOLLOWS_S, DT_S)).collect()
+}
+
+/// Whether targets count at sample `i`.
+#[allow(clippy::float_cmp)] // A mode is a whole number.
+pub(super) fn is_told(s: &Signals, i: usize) -> bool {
+    s.arm_mode[i] == MANUAL_POSITION
 }
 
 /// Axles whose two arms are never commanded otherwise than each other: no log of these shows there
@@ -145,8 +155,7 @@ fn gather(runs: &[Signals], of: Of) -> PerWheel<Samples> {
     let mut all = PerWheel::from_fn(|_| Samples::new());
     for s in runs {
         let wheels = PerWheel::from_fn(|w| of(s, w));
-        let manual = |i: &usize| s.arm_mode[*i] == MANUAL_POSITION;
-        let used: Vec<usize> = (0..s.len).step_by(STRIDE).filter(manual).collect();
+        let used: Vec<usize> = (0..s.len).step_by(STRIDE).filter(|i| is_told(s, *i)).collect();
         let apart = |w: Wheel, i: usize| {
             wheels[w][i] - wheels.iter().map(|(_, samples)| samples[i]).sum::<f64>() / 6.0
         };

@@ -85,9 +85,21 @@ impl Replay {
             return Ok(Terrain::load(path)?);
         }
         let beside = self.log.parent().unwrap_or(Path::new("")).join("about.toml");
-        match self.about.as_ref().or(Some(&beside).filter(|path| path.exists())) {
-            Some(path) => Ok(About::terrain_of(path, &self.log)?),
-            None => Ok(Terrain::Flat),
+        if let Some(path) = &self.about {
+            return Ok(About::terrain_of(path, &self.log)?);
         }
+        if !beside.exists() {
+            return Ok(Terrain::Flat);
+        }
+        if About::load(&beside)?.run_of(&self.log).is_none() {
+            eprintln!(
+                "IGNORED: {} has no [[run]] for {}, which is taken as driven on level ground; name it there, or say \
+                 --about or --terrain",
+                beside.display(),
+                self.log.display()
+            );
+            return Ok(Terrain::Flat);
+        }
+        Ok(About::terrain_of(&beside, &self.log)?)
     }
 }

@@ -53,6 +53,14 @@ fn a_log_given_twice_is_refused() {
 }
 
 #[test]
+fn a_file_that_is_no_database_is_said_to_be_none() {
+    let output = xt28(&["gap", "where", &log(), "--dbc", &log()]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("short.log: is no DBC, as no line of it declares a message"), "{talk}");
+}
+
+#[test]
 fn a_log_that_is_too_short_is_refused_with_its_length() {
     let (_folder, log) = changed(|at_s, rest| (at_s < 2.0).then(|| (at_s, rest.to_owned())));
     let talk = refusal(&[&log]);
@@ -66,7 +74,7 @@ fn a_clock_that_steps_is_refused_with_its_line() {
     };
     let (_folder, log) = changed(ahead);
     let talk = refusal(&[&log]);
-    assert!(talk.contains("clock steps by +3600.") && talk.contains("changed.log:"), "{talk}");
+    assert!(talk.contains(": no frames for 3600.0 s, or a clock step; cut the log"), "{talk}");
     let back =
         |at_s: f64, rest: &str| Some((if at_s > 5.0 { at_s - 3.0 } else { at_s }, rest.to_owned()));
     let (_folder, log) = changed(back);
@@ -236,7 +244,7 @@ fn wheels_in_another_order_are_named_and_not_put_in_order() {
 }
 
 #[test]
-fn a_log_that_nothing_speaks_of_needs_its_ground_told() {
+fn what_lies_beside_and_speaks_of_other_logs_is_loudly_passed_over_unless_it_was_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let [copy, about, flat] =
         ["short.log", "about.toml", "flat.toml"].map(|name| path(folder.path(), name));
@@ -246,11 +254,20 @@ fn a_log_that_nothing_speaks_of_needs_its_ground_told() {
     for task in [&["where"][..], &["diagnose", "--no-how-far"]] {
         let of =
             |more: &[&str]| xt28(&[&["gap"], task, &[copy.as_str(), "--dbc", DBC], more].concat());
-        let untold = String::from_utf8(of(&[]).stderr).unwrap();
-        assert!(untold.contains("about.toml: no [[run]] with file = \"short.log\""), "{untold}");
-        assert!(untold.contains("--terrain"), "{untold}");
+        let beside = of(&[]);
+        let talk = String::from_utf8(beside.stderr).unwrap();
+        assert_ne!(beside.status.code(), Some(2), "{talk}");
+        assert!(talk.contains("IGNORED for short.log: ") && talk.contains("about.toml"), "{talk}");
+        assert!(talk.contains("taken as driven on level ground"), "{talk}");
+        let asked = of(&["--about", &about]);
+        let talk = String::from_utf8(asked.stderr).unwrap();
+        assert_eq!(asked.status.code(), Some(2), "{talk}");
+        assert!(talk.contains("about.toml: no [[run]] with file = \"short.log\""), "{talk}");
+        assert!(talk.contains("--terrain"), "{talk}");
         let told = of(&["--terrain", &flat]);
-        assert_ne!(told.status.code(), Some(2), "{}", String::from_utf8_lossy(&told.stderr));
+        let talk = String::from_utf8(told.stderr).unwrap();
+        assert_ne!(told.status.code(), Some(2), "{talk}");
+        assert!(talk.contains("taken as driven where --terrain says"), "{talk}");
     }
 }
 

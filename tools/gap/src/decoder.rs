@@ -34,10 +34,13 @@ impl Decoder {
     /// no channel is of no matter.
     ///
     /// # Errors
-    /// [`GapError::Dbc`], [`GapError::Layout`] for a signal that would be misread,
+    /// [`GapError::NoDatabase`], [`GapError::Dbc`], [`GapError::Layout`] for a signal that would be misread,
     /// [`GapError::Missing`] for a required channel, [`GapError::Misnamed`] for one that a mapping
     /// file names, [`GapError::Unit`].
     pub fn parse(text: &str, path: &Path, mapping: &Mapping) -> Result<Self, GapError> {
+        if !text.lines().any(|line| line.trim_start().starts_with("BO_ ")) {
+            return Err(GapError::NoDatabase { path: path.to_owned() });
+        }
         let database = Database::parse(text, &path.display().to_string())
             .map_err(|error| GapError::Dbc { problem: error.to_string() })?;
         let name = |(channel, source): (Channel, &Source)| {

@@ -38,6 +38,14 @@ pub enum GapError {
         /// What is wrong there, and what would be right.
         problem: String,
     },
+    /// A file that is said to be a DBC is something else.
+    #[error(
+        "{path}: is no DBC, as no line of it declares a message (BO_); give the database that the log was sent with"
+    )]
+    NoDatabase {
+        /// The file.
+        path: PathBuf,
+    },
     /// The DBC is no database.
     #[error("{problem}")]
     Dbc {
@@ -221,7 +229,8 @@ pub enum GapError {
     },
     /// A log is two, one after the other.
     #[error(
-        "{log}:{line}: clock steps by {by_s:+.3} s; cut the log before this line and give both parts, or one"
+        "{log}:{line}: {}; cut the log before this line and give both parts, or one",
+        step(*by_s)
     )]
     ClockSteps {
         /// The log.
@@ -378,6 +387,15 @@ pub enum GapError {
         /// Who chose so.
         why: String,
     },
+}
+
+/// What a step of the clock looks like: ahead nobody can tell it from a logger that paused.
+fn step(by_s: f64) -> String {
+    if by_s > 0.0 {
+        format!("no frames for {by_s:.1} s, or a clock step")
+    } else {
+        format!("clock steps by {by_s:+.3} s")
+    }
 }
 
 impl From<ReadError> for GapError {

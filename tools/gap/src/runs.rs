@@ -29,6 +29,7 @@ use shared_time::{SharedTime, shared_time};
 pub struct RunSet {
     runs: Vec<KnownRun>,
     notes: Vec<String>,
+    warnings: Vec<String>,
 }
 
 /// One log with what is known of it.
@@ -51,6 +52,8 @@ pub struct KnownRun {
 pub struct Known<'a> {
     /// What is known of the logs: the file that speaks of each.
     pub about: Option<&'a Path>,
+    /// Whether that was asked for, and so has to speak of every log; what was found beside them need not.
+    pub is_asked: bool,
     /// The ground of every run, instead of what `about` says.
     pub terrain: Option<&'a Path>,
 }
@@ -77,7 +80,7 @@ impl RunSet {
             let told = match (&about, known.about) {
                 (Some(about), Some(file)) => {
                     let told = about.run_of(path);
-                    if told.is_none() && one_ground.is_none() {
+                    if told.is_none() && one_ground.is_none() && known.is_asked {
                         let log = file_name(path);
                         return Err(GapError::NoRun { path: file.to_owned(), log });
                     }
@@ -117,7 +120,14 @@ impl RunSet {
                 "No word on the ground: every run is taken as driven on level ground.".to_owned(),
             );
         }
-        Self::new(runs, notes)
+        let unnamed = about.as_ref().map_or_else(Vec::new, |about| {
+            let unnamed = paths.iter().zip(&runs).filter(|(path, _)| about.run_of(path).is_none());
+            unnamed.map(|(_, run)| run.file.as_str()).collect()
+        });
+        let warning =
+            known.about.and_then(|file| passed_over(file, &unnamed, one_ground.is_some()));
+        let warnings = warning.into_iter().collect();
+        Ok(Self { warnings, ..Self::new(runs, notes)? })
     }
 
     /// The set of `runs`, with what there is to say of them.
@@ -131,7 +141,7 @@ impl RunSet {
         // In order, so that of several errors it is always the same that is told.
         let answers: Vec<_> = pairs.par_iter().map(apart).collect();
         answers.into_iter().collect::<Result<(), GapError>>()?;
-        Ok(Self { runs, notes })
+        Ok(Self { runs, notes, warnings: Vec::new() })
     }
 
     /// The runs, in the order given.
@@ -152,7 +162,13 @@ impl RunSet {
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
         let faults = self.runs.iter().flat_map(|run| run.log.told_faults());
-        self.notes.iter().cloned().chain(faults).collect()
+        self.warnings.iter().chain(&self.notes).cloned().chain(faults).collect()
+    }
+
+    /// Those of the notes that nobody may miss.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
     }
 
     /// What is asked of the runs, about a machine of `machine`'s make, without those that `choice` leaves out.
@@ -244,6 +260,20 @@ impl RunSet {
         }
         Ok(runs)
     }
+}
+
+/// What to say of logs `unnamed` in an `about` that was found beside them; nothing where it names all.
+fn passed_over(about: &Path, unnamed: &[&str], is_ground_told: bool) -> Option<String> {
+    let logs = unnamed.join(", ");
+    let ground =
+        if is_ground_told { "driven where --terrain says" } else { "driven on level ground" };
+    (!unnamed.is_empty()).then(|| {
+        format!(
+            "IGNORED for {logs}: {} lies beside and has no [[run]] with that file; taken as {ground}, and nothing is \
+             known of what was driven. Name it there, or say --about or --terrain.",
+            about.display()
+        )
+    })
 }
 
 /// Refuses two logs that are one, or parts of one that overlap.

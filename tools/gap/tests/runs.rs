@@ -55,6 +55,7 @@ fn a_run_goes_by_file_number_or_scenario() {
         (&[], &["bend"], "FFhhF"),
         (&["step"], &["5"], "F---h"),
         (&["1", "step", "run-1-step"], &["2"], "Fh---"),
+        (&["run-1", "run-4"], &[], "FhhFh"),
     ] {
         assert_eq!(letters(&choose(fit, held).unwrap()), wanted, "{fit:?} {held:?}");
     }
@@ -95,6 +96,7 @@ fn a_number_that_may_mean_two_runs_is_refused() {
     let error = set.choose(&names(&["2"]), &[]).unwrap_err().to_string();
     assert!(error.starts_with("`2` may mean run-2-sine.log and run-3-bend.log"), "{error}");
     assert_eq!(letters(&set.choose(&names(&["3"]), &[]).unwrap()), "hF");
+    assert_eq!(letters(&set.choose(&names(&["run-2"]), &[]).unwrap()), "Fh", "its own number");
 }
 
 /// Each day's first run has the same file name.

@@ -27,8 +27,8 @@ use crate::{Failure, Verdict};
 /// "unknown". Exit status: 0 nothing beyond ordinary tolerances; 1 an effect, or something unknown;
 /// 2 it could not be done.
 ///
-/// RUN is a file name with or without its ending, a scenario of about.toml, or a number: of a log in the
-/// order given, or that in run-3-mixed.log; one that may be either is refused. --fit alone holds out all
+/// RUN is a file name with or without its ending, its beginning up to its number (run-3), a scenario of about.toml,
+/// or a number: of a log in the order given, or that in run-3-mixed.log; one that may be either is refused. --fit alone holds out all
 /// other runs, --held alone fits on all others; with both, runs that neither names are left out. Without
 /// --fit and --held, about.toml says what is fitted on; without it at most a third is held out, the last
 /// runs that show no effect the others do not.
@@ -95,7 +95,7 @@ impl Diagnose {
         let start = Instant::now();
         let bar = progress_bar();
         bar.set_message("reading logs");
-        let (inquiry, notes) = self.inquiry()?;
+        let (inquiry, notes) = self.inquiry(&bar)?;
         let show = |progress: Progress| {
             bar.set_message(progress.stage);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 1000
@@ -131,7 +131,7 @@ impl Diagnose {
     }
 
     /// The question, and what was taken for granted in asking it.
-    fn inquiry(&self) -> Result<(Inquiry, Vec<String>), Failure> {
+    fn inquiry(&self, bar: &ProgressBar) -> Result<(Inquiry, Vec<String>), Failure> {
         let mapping =
             self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
         let decoder = Decoder::load(&self.dbc, &mapping)?;
@@ -139,8 +139,10 @@ impl Diagnose {
         let believed =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let about = about(&self.logs, self.about.as_ref())?;
-        let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
+        let (is_asked, terrain) = (self.about.is_some(), self.terrain.as_deref());
+        let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
+        bar.suspend(|| set.warnings().iter().for_each(|warning| eprintln!("{warning}")));
         let choice = set.choose(&self.fit, &self.held)?;
         let (about, machine_file) = (about.as_deref(), self.machine.as_deref());
         let given = Given { about, dbc: &self.dbc, machine: machine_file };
@@ -187,6 +189,10 @@ impl Diagnose {
             return Ok(Subject { name: name.to_string_lossy().into_owned(), date: String::new() });
         };
         let about = About::load(&path)?;
+        if self.logs.iter().all(|log| about.run_of(log).is_none()) {
+            let name = self.logs[0].file_name().unwrap_or_default().to_string_lossy();
+            return Ok(Subject { name: name.into_owned(), date: String::new() });
+        }
         Ok(Subject { name: about.case, date: about.date.unwrap_or_default() })
     }
 

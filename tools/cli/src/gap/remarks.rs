@@ -18,7 +18,11 @@ pub(super) struct Given<'a> {
 pub(super) fn remarks(set: &RunSet, given: &Given<'_>) -> Result<Vec<String>, Failure> {
     let mut all = set.notes();
     if let Some(path) = given.about {
-        all.extend(unread(&About::load(path)?, path, given));
+        let about = About::load(path)?;
+        // One that speaks of other logs says nothing of these.
+        if set.runs().iter().any(|run| run.advised.is_some()) {
+            all.extend(unread(&about, path, given));
+        }
     }
     let logs: Vec<(&str, &FieldLog)> =
         set.runs().iter().map(|run| (run.file.as_str(), &run.log)).collect();

@@ -71,7 +71,8 @@ impl Where {
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let about = about(&self.logs, self.about.as_ref())?;
-        let known = Known { about: about.as_deref(), terrain: self.terrain.as_deref() };
+        let (is_asked, terrain) = (self.about.is_some(), self.terrain.as_deref());
+        let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let machine_file = self.machine.as_deref();
         let given = Given { about: about.as_deref(), dbc: &self.dbc, machine: machine_file };
@@ -83,10 +84,11 @@ impl Where {
             Ok::<_, GapError>(with_noise_of(signals, run.log.all_series(), &machine))
         };
         let mut runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
-        RunSet::ensure_agreeing(&runs)?;
+        // First, as wheels in another order make an attitude that does not agree.
         if let Some(swap) = swapped_wheels(&runs) {
             eprintln!("wheels look swapped: {swap}; nothing is put in order by itself");
         }
+        RunSet::ensure_agreeing(&runs)?;
         share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
             eprintln!("{remark}");

@@ -208,7 +208,7 @@ fn inquiry_in(folder: &Path, seen: impl Fn(FieldLog) -> FieldLog) -> Result<Inqu
     if logs.is_empty() {
         return Err(CheckError::NoRuns { path });
     }
-    let known = Known { about: Some(&path), terrain: None };
+    let known = Known { about: Some(&path), is_asked: true, terrain: None };
     let runs = RunSet::load(&logs, &decoder, known, false)?.map_logs(seen);
     let choice = runs.choose(&[], &[])?;
     Ok(runs.into_inquiry(Machine::xt28(), &choice, false)?)

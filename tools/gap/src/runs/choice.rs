@@ -29,8 +29,8 @@ pub enum Use {
 impl RunSet {
     /// The runs named in `fit` are fitted on, those in `held` are held out. With one of the two
     /// empty, the rest is for the other; with both empty it is as `about.toml` advises, else the last
-    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings, with its folder where another has the same), by its place among
-    /// the logs from 1, or by its scenario, which may be several runs.
+    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings, with its folder where another has the same), by its
+    /// beginning up to its number (`run-3` of `run-3-mixed.log`), by its place among the logs from 1, or by its scenario, which may be several runs.
     ///
     /// # Errors
     /// [`GapError::NoSuchRun`], [`GapError::AmbiguousRun`], [`GapError::FittedAndHeld`],
@@ -117,6 +117,13 @@ impl RunSet {
                 return Err(self.ambiguous(name, &found));
             }
         }
+        // `run-3` is short for `run-3-mixed.log`.
+        if let (true, Some(number)) = (found.is_empty(), number_alone(name)) {
+            found = all(&|_, run| own_number(bare(&run.file)) == Some(number));
+            if found.len() > 1 {
+                return Err(self.ambiguous(name, &found));
+            }
+        }
         if found.is_empty() {
             return Err(GapError::NoSuchRun { name: name.to_owned(), known: self.known() });
         }
@@ -142,6 +149,11 @@ impl RunSet {
 fn stem(file: &str) -> &str {
     let bare = file.strip_suffix(".gz").unwrap_or(file);
     [".log", ".mcap", ".candump"].iter().find_map(|end| bare.strip_suffix(end)).unwrap_or(bare)
+}
+
+/// The number in `run-3`, and nothing behind it.
+fn number_alone(name: &str) -> Option<usize> {
+    name.strip_prefix("run-")?.parse().ok()
 }
 
 /// The number in `run-3-mixed.log`.

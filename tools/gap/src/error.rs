@@ -1,13 +1,14 @@
 //! Why a log cannot be read or replayed: one line each, with file, line and remedy.
 
+mod disagreement;
+
 use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
-use crate::diagnosis::{
-    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, StrokeScale, Swap,
-    SwappedChambers, WheelScale,
-};
+use crate::diagnosis::Swap;
+
+pub use disagreement::Disagreement;
 
 /// Why a log cannot be read or replayed.
 #[derive(Debug, thiserror::Error)]
@@ -259,70 +260,9 @@ pub enum GapError {
         /// SI unit.
         unit: &'static str,
     },
-    /// The pressures of a cylinder's chambers are in each other's places.
-    #[error(
-        "the chambers of a cylinder look swapped: {swapped}, for so they make the load that the frames tell; mend DBC or mapping"
-    )]
-    ChamberOrder {
-        /// Where.
-        swapped: SwappedChambers,
-    },
-    /// The chambers' pressures and the cylinders' loads are not on one scale.
-    #[error(
-        "the chambers' pressures do not make the cylinders' loads: {scale} times what the frames tell; check unit and factor of both in DBC and mapping"
-    )]
-    LoadScale {
-        /// Where, and by how much.
-        scale: LoadScale,
-    },
-    /// Wheel speeds are not on the scale of the receiver's ways and the throttle.
-    #[error(
-        "the wheels roll {scale}, which no machine does; check unit, factor and sign of {} in DBC and mapping",
-        scale.to_mend()
-    )]
-    SpeedScale {
-        /// By how much.
-        scale: SpeedScale,
-    },
-    /// A wheel's speed is not on the scale of the other wheels' and of the throttle.
-    #[error(
-        "not all wheels turn as one machine's do: {scale} as fast as the others; check unit, factor and sign of it in DBC and mapping"
-    )]
-    WheelScale {
-        /// Which, and by how much.
-        scale: WheelScale,
-    },
-    /// A joint does not turn as its valve and the command say.
-    #[error("the joints do not turn as they are steered: {scale} in DBC and mapping")]
-    JointScale {
-        /// Which, by how much, and what to look at.
-        scale: JointScale,
-    },
-    /// A stroke is not on the scale of its target.
-    #[error(
-        "the strokes are not what their targets make them: {scale}; check unit and factor of stroke and target in DBC and mapping"
-    )]
-    StrokeScale {
-        /// Which, and by how much.
-        scale: StrokeScale,
-    },
-    /// Roll or pitch is not on the scale of the strokes.
-    #[error(
-        "the machine's attitude is not what its strokes make it: {scale} what they say; {}",
-        scale.to_mend()
-    )]
-    AttitudeScale {
-        /// Which, and by how much.
-        scale: AttitudeScale,
-    },
-    /// The heading is not the way in which the fixes go.
-    #[error(
-        "the receiver's heading should count counter-clockwise from east, as its fixes go, but {odd} (docs/diagnosis.md)"
-    )]
-    HeadingSense {
-        /// How it counts.
-        odd: OddHeading,
-    },
+    /// Two sensors tell one thing differently.
+    #[error(transparent)]
+    Disagreement(#[from] Disagreement),
     /// Commands and readings are not of the same wheels.
     #[error(
         "wheels look swapped: {swap}; nothing is put in order by itself: mend the mapping, or say --accept-wheel-order if the machine itself is wired so"

@@ -39,7 +39,7 @@ pub use channel::{Channel, Need, PumpSide, SteerSide};
 pub use comparison::Row;
 pub use decoder::Decoder;
 pub use dimension::Dimension;
-pub use error::GapError;
+pub use error::{Disagreement, GapError};
 pub use errors_between::Errors;
 pub use field_log::FieldLog;
 pub use log_fault::{FaultKind, LogFault};

@@ -17,7 +17,7 @@ use crate::diagnosis::{
     FieldRun, Inquiry, Signals, attitude_scale, joint_scale, load_scale, odd_heading, speed_scale,
     stroke_scale, swapped_chambers, swapped_wheels, wheel_scale,
 };
-use crate::{About, Decoder, FieldLog, GapError};
+use crate::{About, Decoder, Disagreement, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
@@ -193,43 +193,38 @@ impl RunSet {
     /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
     ///
     /// # Errors
-    /// [`GapError::ChamberOrder`], [`GapError::LoadScale`], [`GapError::WheelScale`], [`GapError::SpeedScale`],
-    /// [`GapError::HeadingSense`], [`GapError::JointScale`], [`GapError::StrokeScale`] and
-    /// [`GapError::AttitudeScale`].
-    pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+    /// [`Disagreement`].
+    pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
         Self::ensure_pressures_agreeing(runs)?;
         Self::ensure_motions_agreeing(runs)
     }
 
     /// The same of what the chambers' pressures say, which take no heed of which wheel's stroke is whose.
-    fn ensure_pressures_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+    fn ensure_pressures_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
         if let Some(swapped) = swapped_chambers(runs) {
-            return Err(GapError::ChamberOrder { swapped });
+            return Err(Disagreement::ChamberOrder { swapped });
         }
-        if let Some(scale) = load_scale(runs) {
-            return Err(GapError::LoadScale { scale });
-        }
-        Ok(())
+        load_scale(runs).map_or(Ok(()), |scale| Err(Disagreement::LoadScale { scale }))
     }
 
     /// The same of wheels, joints, strokes and attitude.
-    fn ensure_motions_agreeing(runs: &[Signals]) -> Result<(), GapError> {
+    fn ensure_motions_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
         if let Some(scale) = wheel_scale(runs) {
-            return Err(GapError::WheelScale { scale });
+            return Err(Disagreement::WheelScale { scale });
         }
         if let Some(scale) = speed_scale(runs) {
-            return Err(GapError::SpeedScale { scale });
+            return Err(Disagreement::SpeedScale { scale });
         }
         if let Some(odd) = odd_heading(runs) {
-            return Err(GapError::HeadingSense { odd });
+            return Err(Disagreement::HeadingSense { odd });
         }
         if let Some(scale) = joint_scale(runs) {
-            return Err(GapError::JointScale { scale });
+            return Err(Disagreement::JointScale { scale });
         }
         if let Some(scale) = stroke_scale(runs) {
-            return Err(GapError::StrokeScale { scale });
+            return Err(Disagreement::StrokeScale { scale });
         }
-        attitude_scale(runs).map_or(Ok(()), |scale| Err(GapError::AttitudeScale { scale }))
+        attitude_scale(runs).map_or(Ok(()), |scale| Err(Disagreement::AttitudeScale { scale }))
     }
 
     /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may

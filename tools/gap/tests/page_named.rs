@@ -54,13 +54,13 @@ fn what_the_verdict_names_has_a_ring_in_the_picture_however_small_its_gap() {
     named.causes.truncate(1);
     named.places.iter_mut().for_each(|place| place.gap_over_noise = 0.1);
     assert_eq!(rings(&named), 2, "both wheels of the front axle");
-    assert!(page_of(&named).contains("named in the verdict"));
+    assert!(page_of(&named).contains("named above"));
     named.causes[0].effect = find("steer-lag").unwrap();
     assert_eq!(rings(&named), 2, "both joints");
     named.causes[0].effect = find("frame-loss").unwrap();
     assert_eq!(rings(&named), 1, "the bus");
     let sound = Diagnosis { causes: Vec::new(), ..diagnosis(Verdict::None) };
-    assert!(!page_of(&sound).contains("named in the verdict"));
+    assert!(!page_of(&sound).contains("named above"));
 }
 
 #[test]

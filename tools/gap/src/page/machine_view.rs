@@ -74,7 +74,7 @@ pub(super) fn draw(machine: &Machine, diagnosis: &Diagnosis) -> String {
     bus(&mut svg, parts.bus, named.bus);
     if !named.is_none() {
         ring(&mut svg, [KEY_X + RING_PX, 210.0], [9.0, 9.0], 2.0);
-        svg.text([KEY_X + 22.0, 218.0], "named in the verdict", Anchor::Start, 10.5, INK);
+        svg.text([KEY_X + 22.0, 218.0], "named above", Anchor::Start, 10.5, INK);
     }
     let drawing =
         svg.finish("The machine from above, each wheel, joint and frame in the colour of its gap");

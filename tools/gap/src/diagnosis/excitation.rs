@@ -147,6 +147,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_is_not_shown_is_fitted_where_it_was_held_out_and_else_driven() {
+        let effect = xt28_sim::effects::find("engine-droop").unwrap();
+        let nothing = Shown::of(std::iter::empty(), &Machine::xt28());
+        let of = |driven: &str| nothing.not_testable_in(&[effect], |name| name == driven).remove(0);
+        assert_eq!(of("s-turn").remedy(), "drive straight");
+        let more = of("straight");
+        assert_eq!(more.remedy(), "drive straight again, with 60 % of throttle or more");
+        let held = NotTestable { fit: vec!["run-4.log".to_owned()], ..more };
+        assert_eq!(held.remedy(), "fit run-4.log");
+        assert!(!nothing.tests(effect, Scope::All) && !held.in_part);
+        // Any one arm will do, so that none did is so of every wheel.
+        let creeping = xt28_sim::effects::find("leakage-drift").unwrap();
+        assert!(!nothing.tests(creeping, Scope::Wheel(Wheel::Fr)));
+    }
+
+    #[test]
     fn every_need_is_of_an_effect_there_is_and_stands_once() {
         for (i, (name, needs)) in NEEDS.iter().enumerate() {
             assert!(xt28_sim::effects::find(name).is_some(), "{name}");

@@ -161,30 +161,6 @@ fn a_front_frame_that_may_roll_rolls_as_in_the_reference() {
     assert!(apart < 0.05, "{apart} degrees apart at the stop");
 }
 
-/// Ground and commands drawn from a seed.
-#[test]
-fn it_goes_where_the_reference_goes_on_ground_and_commands_of_chance() {
-    for seed in 0..4_u32 {
-        let draw = |k: u32| ((f64::from(seed * 31 + k) * 12.989_8).sin() * 43_758.545_3).fract();
-        let ground = Grid::from_fn(Extent::default(), |x, y| {
-            let wave = |k: u32, length_m: f64| {
-                let heading = 6.3 * draw(k);
-                let along = x * heading.cos() + y * heading.sin();
-                (6.3 * along / length_m + 6.3 * draw(k + 1)).sin()
-            };
-            0.08 * wave(1, 4.0) + 0.05 * wave(3, 2.5) + 0.02 * wave(5, 1.2)
-        });
-        let command = |t: f64| Actuation {
-            pump_displacement: [(t / 2.0).min(1.0); 2],
-            steer_opening: [0.2 * (0.7 * t + draw(7)).sin(), 0.15 * (0.6 * t + draw(8)).sin()],
-            arm_opening: PerWheel::from_fn(|w| 0.1 * (t + draw(9 + w.index() as u32)).sin()),
-            ..idle()
-        };
-        let apart_m = against_rapier(&Terrain::Grid(Arc::new(ground)), command);
-        assert!(apart_m < 0.05, "seed {seed}: {apart_m} m apart");
-    }
-}
-
 #[test]
 fn a_boulder_under_the_belly_is_felt_and_a_wheel_s_is_not() {
     let boulder = |x_m: f64, y_m: f64| {

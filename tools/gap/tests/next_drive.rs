@@ -77,10 +77,13 @@ fn what_is_sure_needs_no_drive_nor_does_what_has_no_likely_rival() {
     assert!(of(two(0.97, 0.02), 0.0).is_none(), "one is sure");
     assert!(of(two(0.8, 0.005), 0.005).is_none(), "the rest is in no catalogue");
     assert!(of(two(0.005, 0.003), 0.99).is_none(), "the machine is sound");
-    // Of a machine that was not steered yet: nothing is known of its joints.
-    let unsteered = vec![own_logs::run("arms", &Effects::default(), true)];
+    // Of a machine that does steer late: of one that does not, no drive takes evidence away.
+    let mut late = Effects::default();
+    let delay = find("steer-delay").unwrap().parameters;
+    delay[0].set(&mut late, "all".parse().unwrap(), 0.3);
+    let driven = vec![own_logs::run("drive", &late, true)];
     let late_or_none = Diagnosis { probability_none: 0.3, ..diagnosis(two(0.6, 0.005)) };
-    let next = next_drive(&Inquiry::new(Machine::xt28(), unsteered), &late_or_none).unwrap();
+    let next = next_drive(&Inquiry::new(Machine::xt28(), driven), &late_or_none).unwrap();
     let (next, _) = next.expect("a cause or none");
     assert_eq!(next.separates, ["steer-delay", "none"]);
 }

@@ -122,8 +122,7 @@ class Drive:
         """Torque on each wheel for pumps and motors that are all set alike, Nm."""
         target = self._full_rad_s * engine_rpm / self._engine_rpm * pump / motor
         means = [float(np.mean(rate_rad_s[circuit])) for circuit in self._circuits]
-        # A motor makes at relief pressure what its displacement gives.
-        bound = self._torque_max_nm * motor
+        bound = self._torque_max_nm
         circuit_nm = [
             clamp(self._mean_nm + self._gain_nms * (target - mean), -bound, bound)
             for mean in means
@@ -138,8 +137,7 @@ class Drive:
         error = target - sum(means) / 2.0
         full = scale < 1.0 or any(abs(nm) >= bound for nm in circuit_nm)
         if not (full and error * sum(circuit_nm) > 0.0):
-            most = self._torque_max_nm
-            self._mean_nm = clamp(self._mean_nm + self._integral_nm * error * dt_s, -most, most)
+            self._mean_nm = clamp(self._mean_nm + self._integral_nm * error * dt_s, -bound, bound)
         return torque_nm * scale
 
     def _limit(self, engine_rpm: float, wanted_w: float) -> float:

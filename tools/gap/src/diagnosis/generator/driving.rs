@@ -58,10 +58,9 @@ fn pressure_errors(
         let asked = 0.5 * (taken(1) + taken(2));
         let throttle = lag.step(asked, machine.drive.speed_time_constant_s, DT_S);
         let input = DriveInput {
-            // As if the pump alone made the speed, of which its whole displacement is a third: whether motors at
-            // less than theirs have less torque is each make's own.
-            pump_displacement: [3.0 * throttle; 2],
-            motor_displacement: PerWheel::splat(1.0),
+            // Motors at a third: what the pump then gives is the throttle's share of full speed.
+            pump_displacement: [throttle; 2],
+            motor_displacement: PerWheel::splat(1.0 / 3.0),
             engine_speed_rpm: machine.drive.engine_speed_rpm,
             wheel_speed_rad_s: wheel_speeds(signals, effects, i),
         };

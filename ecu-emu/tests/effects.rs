@@ -6,12 +6,16 @@ use std::path::Path;
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
 use xt28_dbc::e2e::AliveCounter;
 use xt28_dbc::messages::{
-    ArmStatus, ArmStatusState, ArmTarget, ArmTargetMode, DriveTarget, PosFront, WheelSpeedSigned,
+    ArmStatus, ArmStatusState, ArmTarget, ArmTargetMode, PosFront, WheelSpeedSigned,
 };
 use xt28_dbc::{Frame, Outbox};
 use xt28_machine::{Machine, SimTime, Wheel};
 use xt28_sim::effects::{CATALOGUE, Effect, Entry, Overlay, Scope};
 use xt28_sim::{Effects, Terrain, VehicleState};
+
+mod drive_off;
+
+use drive_off::{LASTS_S, commands};
 
 /// The frames of 14 s: arms go from 170 to 220 mm at 1 s, the machine drives from 3 s on and turns
 /// left from 6 s on.
@@ -24,30 +28,10 @@ fn run(effects: Effects) -> (Vec<(SimTime, Frame)>, VehicleState) {
     let config =
         EmulatorConfig { effects, ..EmulatorConfig::new(Machine::xt28(), Terrain::Flat, Some(5)) };
     let mut emulator = Emulator::new(&config);
-    let (mut arm, mut drive) = (AliveCounter::default(), AliveCounter::default());
+    let mut counters = [AliveCounter::default(); 2];
     let (mut out, mut now, mut log) = (Outbox::with_capacity(64), SimTime::ZERO, Vec::new());
-    while now < SimTime::from_millis(14_000) {
-        let t = now.as_secs_f64();
-        let mm = if t < 1.0 { 170.0 } else { 220.0 };
-        let arms = ArmTarget {
-            fr_mm: mm,
-            fl_mm: mm,
-            mr_mm: mm,
-            ml_mm: mm,
-            br_mm: mm,
-            bl_mm: mm,
-            mode: ArmTargetMode::ManualPosition,
-            counter: arm.next_count(),
-        };
-        let target = DriveTarget {
-            throttle_percent: if t < 3.0 { 0.0 } else { 40.0 },
-            front_angle_deg: if t < 6.0 { 0.0 } else { 15.0 },
-            engine_speed_rpm: 1200.0,
-            brake: false,
-            enable: true,
-            counter: drive.next_count(),
-        };
-        for frame in [arms.encode().unwrap(), target.encode().unwrap()] {
+    while now.as_secs_f64() < LASTS_S {
+        for frame in commands(now.as_secs_f64(), &mut counters) {
             emulator.on_frame(now, &frame);
         }
         emulator.tick(now, &mut out);

@@ -3,7 +3,8 @@
 use xt28_dbc::messages::{Eec1, WheelSpeedSigned};
 use xt28_machine::Machine;
 
-use crate::recording::{DRIVES_S, Recording, THROTTLE_PERCENT};
+use crate::drive_off::{DRIVES_S, THROTTLE_PERCENT};
+use crate::recording::Recording;
 use crate::row::{Row, Seen, Size, Stay, mean, most};
 
 const STARTS_LATER: &[Stay] = &[

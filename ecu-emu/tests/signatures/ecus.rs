@@ -6,7 +6,8 @@ use xt28_dbc::messages::{
 };
 use xt28_machine::Machine;
 
-use crate::recording::{BEND_DEG, BENDS_S, DRIVES_S, Recording, target_mm, tick_at};
+use crate::drive_off::{BEND_DEG, BENDS_S, DRIVES_S, target_mm};
+use crate::recording::{Recording, tick_at};
 use crate::row::{Row, Seen, Size, Stay, mean, most};
 
 const PERIOD_S: f64 = 0.01;

@@ -2,6 +2,8 @@
 //! receiver's messages, from its law, and which of them it must leave alone. Every effect that the plant does not know of
 //! has a row here; the others have theirs on the vehicle.
 
+#[path = "../drive_off/mod.rs"]
+mod drive_off;
 mod drives;
 mod ecus;
 mod recording;

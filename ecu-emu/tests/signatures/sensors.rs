@@ -11,7 +11,8 @@ use xt28_machine::{Machine, Wheel};
 use xt28_sim::VehicleState;
 use xt28_ubx::{Geodetic, LocalFrame, Message};
 
-use crate::recording::{LASTS_S, Recording};
+use crate::drive_off::LASTS_S;
+use crate::recording::Recording;
 use crate::row::{Row, Seen, Size, Stay, mean, messages, most};
 
 /// Frames that tell the front strokes, and what the arm ECU makes of them in the same tick.

@@ -66,9 +66,7 @@ impl FieldRun {
     /// Whether it is of the scripted drive `name`, by what is said of it or by its own name.
     #[must_use]
     pub(super) fn is_of_drive(&self, name: &str) -> bool {
-        let told = self.scenario.clone().unwrap_or_else(|| file_name(self.log.name()));
-        let told = told.to_lowercase().replace('_', "-");
-        told.split('.').next().is_some_and(|stem| stem.ends_with(name))
+        is_of(self.scenario.as_deref().unwrap_or_else(|| self.log.name()), name)
     }
 
     /// What it is called: its log's file, without folders where it needs none.
@@ -135,4 +133,12 @@ impl Inquiry {
 /// The last part of a path, whichever way its folders are parted.
 pub(super) fn file_name(path: &str) -> String {
     path.rsplit(['/', '\\']).next().unwrap_or(path).to_owned()
+}
+
+/// Whether the log at `path`, or a scenario of that name, is of the drive `name`, by its own name:
+/// `run-3-s_turn.log.gz`, `s_turn`.
+pub(super) fn is_of(path: &str, name: &str) -> bool {
+    let file = file_name(path).to_lowercase().replace('_', "-");
+    let stem = file.split('.').next().unwrap_or_default();
+    stem.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('-'))
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use xt28_sim::{Effects, Solver, Terrain};
 
 use super::evidence::{Ahead, Evidence};
-use super::inquiry::{FieldRun, Inquiry, file_name};
+use super::inquiry::{Inquiry, is_of};
 use super::judgement::temperature;
 use super::knob::Knob;
 use super::signals::Signals;
@@ -58,8 +58,7 @@ pub fn next_drive(
 
 /// The manoeuvres that no run is of, fitted or held out: what a drive that was made could tell, it has told.
 fn not_made(inquiry: &Inquiry) -> Vec<Manoeuvre> {
-    let told = |run: &FieldRun| run.scenario.clone().unwrap_or_else(|| run.log.name().to_owned());
-    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| is_of(&told(run), m.name));
+    let made = |m: &Manoeuvre| inquiry.runs.iter().any(|run| run.is_of_drive(m.name));
     Manoeuvre::all().into_iter().filter(|m| !made(m)).collect()
 }
 
@@ -87,14 +86,6 @@ pub fn untested_drive(inquiry: &Inquiry, diagnosis: &Diagnosis) -> Option<(Next,
 /// The commands of the scripted drive that a log of this name, or a scenario, is of; `None` where it is of none.
 pub(crate) fn scripted_drive(name: &str) -> Option<FieldLog> {
     Manoeuvre::all().into_iter().find(|m| is_of(name, m.name)).map(|m| m.commands())
-}
-
-/// Whether the log at `path`, or a scenario of that name, is of the drive `name`, by its own name:
-/// `run-3-s_turn.log.gz`, `s_turn`.
-fn is_of(path: &str, name: &str) -> bool {
-    let file = file_name(path).to_lowercase().replace('_', "-");
-    let stem = file.split('.').next().unwrap_or_default();
-    stem.strip_suffix(name).is_some_and(|before| before.is_empty() || before.ends_with('-'))
 }
 
 /// What the rivals stand on: the runs fitted, with what each rival costs there.

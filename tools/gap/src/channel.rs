@@ -37,6 +37,8 @@ pub enum Channel {
     PumpPressure(PumpSide),
     /// Current of a pump's side.
     PumpCurrent(PumpSide),
+    /// Current of a wheel's motor, none where it has all of its displacement.
+    MotorCurrent(Wheel),
     /// Current of a steering solenoid.
     SteerCurrent(SteerSide),
     /// GNSS antenna, east.
@@ -114,7 +116,7 @@ impl Channel {
     /// Every channel, in the order of a report.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        const PER_WHEEL: [fn(Wheel) -> Channel; 10] = [
+        const PER_WHEEL: [fn(Wheel) -> Channel; 11] = [
             Channel::Stroke,
             Channel::WheelSpeed,
             Channel::WheelLoad,
@@ -123,6 +125,7 @@ impl Channel {
             Channel::RodPressure,
             Channel::RetractCurrent,
             Channel::ExtendCurrent,
+            Channel::MotorCurrent,
             Channel::TargetStroke,
             Channel::TargetOpening,
         ];
@@ -161,6 +164,7 @@ impl Channel {
             Self::RetractCurrent(_)
             | Self::ExtendCurrent(_)
             | Self::PumpCurrent(_)
+            | Self::MotorCurrent(_)
             | Self::SteerCurrent(_) => Dimension::Current,
             Self::WheelSpeed(_) | Self::TargetEngineSpeed => Dimension::AngularSpeed,
             Self::FrontJoint
@@ -227,6 +231,7 @@ impl fmt::Display for Channel {
             Self::Pitch => ("attitude", "pitch"),
             Self::PumpPressure(side) => ("pump_pressure", side.name()),
             Self::PumpCurrent(side) => ("pump_current", side.name()),
+            Self::MotorCurrent(w) => ("motor_current", w.name()),
             Self::SteerCurrent(side) => ("steer_current", side.name()),
             Self::East => ("position", "east"),
             Self::North => ("position", "north"),

@@ -77,6 +77,7 @@ fn groups(wheel_radius_m: f64) -> Vec<Group> {
         group(wheels(Channel::ExtendCurrent), "mA", 1e3, None),
         group(SteerSide::ALL.map(Channel::SteerCurrent).to_vec(), "mA", 1e3, None),
         group(PumpSide::ALL.map(Channel::PumpCurrent).to_vec(), "mA", 1e3, None),
+        group(wheels(Channel::MotorCurrent), "mA", 1e3, None),
         group(PumpSide::ALL.map(Channel::PumpPressure).to_vec(), "bar", 1e-5, None),
         group(vec![Channel::East, Channel::North], "m", 1.0, None),
     ]

@@ -6,6 +6,7 @@
 mod bench;
 mod guest;
 mod harness;
+mod own_bench;
 mod second_engine;
 mod side_by_side;
 mod tally;
@@ -41,6 +42,7 @@ enum Chore {
     /// Build the guest's kernel, unless it is kept already, and print its path
     GuestKernel(vcan::Cache),
     Bench(bench::Bench),
+    OwnBench(own_bench::OwnBench),
     SecondEngine(second_engine::SecondEngine),
     ThirdMake(third_make::ThirdMake),
 }
@@ -76,6 +78,7 @@ fn perform(chore: Chore) -> Outcome<u8> {
             Ok(0)
         }
         Chore::Bench(bench) => bench.execute(&workspace),
+        Chore::OwnBench(own) => own.execute(&workspace),
         Chore::SecondEngine(second) => second.execute(&workspace),
         Chore::ThirdMake(third) => third.execute(&workspace),
     }

@@ -34,7 +34,7 @@ use super::belief::Course;
 use super::floor::Signal;
 use super::floors::BlockKey;
 use super::signals::{Samples, Signals};
-pub(super) use circuits::PRESSURE_AT_TORQUE_MAX_PA;
+pub(super) use circuits::{PRESSURE_AT_TORQUE_MAX_PA, weights};
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
 

@@ -2,6 +2,7 @@
 
 mod command_period;
 mod made;
+mod motors;
 mod receiver;
 mod uncut;
 
@@ -85,6 +86,9 @@ pub struct Signals {
     pub brake: Samples,
     /// Pump pressures 1A 1B 2A 2B.
     pub pump_pressure_pa: [Samples; 4],
+    /// Displacement of each motor as a share of the largest of the six, 0 to 1; empty where their currents are
+    /// not logged.
+    pub motor_share: PerWheel<Samples>,
     /// Roll of the front frame, right side high > 0.
     pub roll_rad: Samples,
     /// Pitch of the front frame, nose up > 0.
@@ -179,6 +183,7 @@ impl Signals {
             throttle: sample(Channel::Throttle),
             brake: sample(Channel::Brake),
             pump_pressure_pa: PumpSide::ALL.map(|side| sample(Channel::PumpPressure(side))),
+            motor_share: motors::shares(&wheels(Channel::MotorCurrent)),
             roll_rad: sample(Channel::Roll),
             pitch_rad: sample(Channel::Pitch),
             fixes: receiver::fixes(series),
@@ -226,7 +231,13 @@ pub(crate) fn sampled() -> impl Iterator<Item = Channel> {
 
 /// Whether blocks are judged by it where it is logged, and do without it where it is not.
 const fn is_extra(channel: Channel) -> bool {
-    matches!(channel, Channel::BorePressure(_) | Channel::RodPressure(_) | Channel::Brake)
+    matches!(
+        channel,
+        Channel::BorePressure(_)
+            | Channel::RodPressure(_)
+            | Channel::Brake
+            | Channel::MotorCurrent(_)
+    )
 }
 
 /// What the load of a cylinder is read from: its pressures where they are logged.

@@ -88,6 +88,7 @@ const fn possible(channel: Channel) -> Option<[f64; 2]> {
         Channel::RetractCurrent(_)
         | Channel::ExtendCurrent(_)
         | Channel::PumpCurrent(_)
+        | Channel::MotorCurrent(_)
         | Channel::SteerCurrent(_) => [-0.1, 5.0],
         Channel::Throttle | Channel::TargetOpening(_) => [-1.05, 1.05],
         _ => return None,

@@ -27,8 +27,11 @@ pub(super) fn stroke_error_m(
 ) -> Samples {
     let effects = course.effects;
     let drive = ArmDrive::new(signals, machine, effects, wheel).over(course);
-    let share = pump::flow_share(signals, machine, effects);
-    let (errors, softness) = drive.stroke_errors_m(&share);
+    // No log says what else the pump has to give. The arm does.
+    let shares = pump::flow_shares(signals, machine, effects);
+    let each = shares.iter().map(|share| drive.stroke_errors_m(share));
+    let least = each.min_by(|(a, _), (b, _)| square(a).total_cmp(&square(b)));
+    let (errors, softness) = least.unwrap_or_default();
     let stiction = &effects.arms[wheel].stiction;
     if stiction.coulomb_n + stiction.stribeck_n == 0.0 {
         return errors;
@@ -37,9 +40,12 @@ pub(super) fn stroke_error_m(
     let each = errors.iter().zip(softness.iter().zip(&seen_n));
     let with: Samples = each.map(|(error_m, (m_n, n))| error_m - m_n * n).collect();
     // Where the pressures are taken, the seals are among the load or they are not; nobody knows.
-    let square =
-        |errors: &Samples| -> f64 { errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum() };
     if square(&with) < square(&errors) { with } else { errors }
+}
+
+/// Sum of the squares of errors, where there are any.
+fn square(errors: &Samples) -> f64 {
+    errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum()
 }
 
 /// Friction of seals that slide as measured, as far as a load that has it in shows it.

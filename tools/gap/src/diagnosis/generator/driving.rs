@@ -9,7 +9,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::{Lag, SlipperyGround};
 use xt28_sim::{Drive, DriveInput, Effects};
 
-use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuits_pa};
+use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuit_means, circuits_pa};
 use super::grade::{Grade, climbs};
 use super::rolling::rolling_errors;
 use super::scrub::scrub_drag_nm;
@@ -57,10 +57,12 @@ fn pressure_errors(
         let taken = |back: usize| signals.throttle[i.saturating_sub(back)];
         let asked = 0.5 * (taken(1) + taken(2));
         let throttle = lag.step(asked, machine.drive.speed_time_constant_s, DT_S);
+        let shares = signals.motor_shares(i);
         let input = DriveInput {
-            // Motors at a third: what the pump then gives is the throttle's share of full speed.
-            pump_displacement: [throttle; 2],
-            motor_displacement: PerWheel::splat(1.0 / 3.0),
+            // Motors at a third: what the pump then gives is the throttle's share of full speed. Where some give
+            // way to a wheel that spins, it gives way as they do.
+            pump_displacement: circuit_means(machine, &shares).map(|mean| throttle * mean),
+            motor_displacement: shares.map(|share| share / 3.0),
             engine_speed_rpm: machine.drive.engine_speed_rpm,
             wheel_speed_rad_s: wheel_speeds(signals, effects, i),
         };
@@ -178,5 +180,44 @@ mod tests {
         let [braked_nm, sped_nm] = [-0.8, 0.8].map(|gains_m_s2| left_nm(gains_m_s2, 5.0e3));
         assert!(braked_nm < 0.3 * braked, "{braked_nm} of {braked}");
         assert!(sped_nm > 0.9 * sped, "{sped_nm} of {sped}");
+    }
+
+    /// Largest error of the circuits' pressures, Pa, where BR spins at twice the speed of the others and its motor
+    /// has three tenths of its displacement, as its current says where `is_logged`.
+    fn spinning_pa(is_logged: bool) -> f64 {
+        let (machine, mut s) = (Machine::xt28(), still(10));
+        let drive = Drive::new(&machine, &Effects::default());
+        let mut state = drive.at_rest(DT_S);
+        s.throttle.fill(0.3);
+        s.motor_share = PerWheel::from_fn(|w| vec![if w == Wheel::Br { 0.3 } else { 1.0 }; s.len]);
+        for i in 0..s.len {
+            let goes_rad_s = 0.3 * machine.drive.speed_full_m_s / machine.wheels.radius_m;
+            for w in Wheel::ALL {
+                let times = if w == Wheel::Br { 2.0 } else { 1.0 };
+                s.wheel_speed_rad_s[w][i] = times * goes_rad_s;
+            }
+            let shares = s.motor_shares(i);
+            let input = DriveInput {
+                pump_displacement: circuit_means(&machine, &shares).map(|mean| 0.3 * mean),
+                motor_displacement: shares.map(|share| share / 3.0),
+                engine_speed_rpm: machine.drive.engine_speed_rpm,
+                wheel_speed_rad_s: PerWheel::from_fn(|w| s.wheel_speed_rad_s[w][i]),
+            };
+            let out = drive.step(&mut state, &input, DT_S);
+            for side in 0..4 {
+                s.pump_pressure_pa[side][i] = out.pump_pressure_pa[side];
+            }
+        }
+        if !is_logged {
+            s.motor_share = PerWheel::from_fn(|_| Samples::new());
+        }
+        let errors = drive_errors(&s, &machine, &Effects::default()).difference_pa;
+        errors.iter().fold(0.0_f64, |most, pa| most.max(pa.abs()))
+    }
+
+    #[test]
+    fn a_wheel_that_spins_on_less_displacement_is_told_by_its_motors_current() {
+        let [known, unknown] = [true, false].map(spinning_pa);
+        assert!(known < 0.02 * unknown, "{known} of {unknown} Pa");
     }
 }

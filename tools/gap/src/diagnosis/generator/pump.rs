@@ -7,25 +7,60 @@ use xt28_sim::{Effects, FlowSharing, Steering};
 use super::arm_drive::ArmDrive;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
-/// Share of its speed that every consumer gets, 0 to 1, by sample; none for a pump that never runs
-/// short.
-pub(super) fn flow_share(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+/// What a pump has to give. Machines differ in it, and no log says it: steering may have a pump of its own, and a
+/// cylinder that retracts may be counted by what it lets go instead of what it takes.
+struct Law {
+    steers: bool,
+    counts_by_bore: bool,
+}
+
+/// The laws that there may be, ours first.
+const LAWS: [Law; 4] = [
+    Law { steers: true, counts_by_bore: false },
+    Law { steers: true, counts_by_bore: true },
+    Law { steers: false, counts_by_bore: false },
+    Law { steers: false, counts_by_bore: true },
+];
+
+/// Share of its speed that every consumer gets, 0 to 1, by sample, under each law of what a pump has to give; one
+/// without samples for a pump that never runs short.
+pub(super) fn flow_shares(signals: &Signals, machine: &Machine, effects: &Effects) -> Vec<Samples> {
     if effects.pump_flow == PumpFlowLimit::default() {
-        return Samples::new();
+        return vec![Samples::new()];
     }
     let flow = FlowSharing::new(machine, effects.pump_flow);
+    let asked = |w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s();
+    let arms_m_s = PerWheel::from_fn(asked);
+    let joints_m3_s = joints_m3_s(signals, machine, effects, &flow);
+    let under = |law: &Law| {
+        let share = |i: usize| {
+            let arm_m3_s = |w: Wheel| {
+                let m_s = arms_m_s[w][i];
+                flow.cylinder_m3_s(if law.counts_by_bore { m_s.abs() } else { m_s })
+            };
+            let steers_m3_s = if law.steers { joints_m3_s[i] } else { 0.0 };
+            flow.share(Wheel::ALL.into_iter().map(arm_m3_s).sum::<f64>() + steers_m3_s)
+        };
+        (0..signals.len).map(share).collect()
+    };
+    LAWS.iter().map(under).collect()
+}
+
+/// What both joints ask, m³/s, by sample.
+fn joints_m3_s(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    flow: &FlowSharing,
+) -> Samples {
     let steering = Steering::new(machine, &effects.steering);
     let mut joints = [steering.straight(DT_S), steering.straight(DT_S)];
-    let asked = |w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s();
-    let arms = PerWheel::from_fn(asked);
-    let share = |i: usize| {
-        let arms_m3_s: f64 = Wheel::ALL.iter().map(|&w| flow.cylinder_m3_s(arms[w][i])).sum();
+    let asked = |i: usize| {
         let joint = |j: usize| {
             let opening = signals.steer_opening[j][i];
             flow.joint_m3_s(steering.open(&mut joints[j], opening, DT_S))
         };
-        let joints_m3_s: f64 = [0, 1].map(joint).iter().sum();
-        flow.share(arms_m3_s + joints_m3_s)
+        [0, 1].map(joint).iter().sum()
     };
-    (0..signals.len).map(share).collect()
+    (0..signals.len).map(asked).collect()
 }

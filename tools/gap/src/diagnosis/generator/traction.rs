@@ -7,7 +7,7 @@
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};
 
-use super::circuits::{is_of_first, motor_nm};
+use super::circuits::{is_of_first, motor_nm, weights};
 use crate::diagnosis::signals::{SMOOTHED, Samples, Signals, smooth};
 
 /// Push over friction up to which a wheel surely holds, and from which on it surely slides: pressures come
@@ -27,14 +27,13 @@ const APART: usize = 10;
 fn torques_nm<'a>(s: &'a Signals, machine: &Machine) -> &'a [PerWheel<Samples>; 2] {
     s.torques_nm(|| {
         let first = PerWheel::from_fn(|w| is_of_first(machine, w));
-        let mean_rad_s = |w: Wheel, i: usize| {
-            let of = Wheel::ALL.into_iter().filter(|other| first[*other] == first[w]);
-            of.map(|other| s.wheel_speed_rad_s[other][i]).sum::<f64>() / 3.0
-        };
         let now_nm = PerWheel::from_fn(|w| {
             let nm = |i| {
-                let off_rad_s = s.wheel_speed_rad_s[w][i] - mean_rad_s(w, i);
-                let nm = motor_nm(s, machine, w, i) - slip_trim_nm(off_rad_s);
+                let weights = weights(s, machine, i);
+                let of = Wheel::ALL.into_iter().filter(|other| first[*other] == first[w]);
+                let flow = of.map(|other| weights[other] * s.wheel_speed_rad_s[other][i]);
+                let off_rad_s = s.wheel_speed_rad_s[w][i] - flow.sum::<f64>() / 3.0;
+                let nm = motor_nm(s, machine, w, i) - weights[w] * slip_trim_nm(off_rad_s);
                 if nm.is_finite() { nm } else { 0.0 }
             };
             (0..s.len).map(nm).collect::<Samples>()

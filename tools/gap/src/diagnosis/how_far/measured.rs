@@ -5,7 +5,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts, Terrain, VehicleState};
 
 use crate::diagnosis::gauge::{Gauge, rod_n};
-use crate::diagnosis::generator::PRESSURE_AT_TORQUE_MAX_PA;
+use crate::diagnosis::generator::{PRESSURE_AT_TORQUE_MAX_PA, weights};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Ticks by which a load as logged is late: the ECU's pressure filter keeps 0.94 of its last value.
@@ -180,10 +180,11 @@ impl<'a> Measured<'a> {
             front_rate_rad_s: [-roll_rate, -pitch_rate, 0.0],
             ..VehicleState::default()
         };
+        let weights = weights(s, self.machine, i);
         for (c, circuit) in self.circuits.iter().enumerate() {
             let [a, b] = [0, 1].map(|k| mean(&s.pump_pressure_pa[2 * c + k], i));
             let torque_nm = (b - a) / PRESSURE_AT_TORQUE_MAX_PA * self.machine.wheels.torque_max_nm;
-            circuit.iter().for_each(|&w| state.wheel_torque_nm[w] = torque_nm);
+            circuit.iter().for_each(|&w| state.wheel_torque_nm[w] = torque_nm * weights[w]);
         }
         self.place(i, stance, &mut state);
         state

@@ -45,8 +45,14 @@ const STRIDE: usize = 10;
 const STANDING: [&str; 3] = ["imu-offset", "seal-stiction", "standstill-drag"];
 
 /// Effects that show in how the wheels roll, beside the receiver's.
-const ROLLING: [&str; 5] =
-    ["rolling-resistance", "slippery-ground", "soft-tyres", "standstill-drag", "wheel-speed-scale"];
+const ROLLING: [&str; 6] = [
+    "rolling-resistance",
+    "slippery-ground",
+    "soft-tyres",
+    "standstill-drag",
+    "stroke-scale",
+    "wheel-speed-scale",
+];
 
 /// Effects that show in how the machine turns beside what its joints read: others turn the joints as well.
 const TURNING: [&str; 2] = ["gnss-latency", "slippery-ground"];

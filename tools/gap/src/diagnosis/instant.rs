@@ -25,6 +25,9 @@ pub(super) struct Instant {
     /// Cosine and sine of the heading, counter-clockwise from east, as roll and as pitch have it: a machine that
     /// turns on a slope stands otherwise before the attitude's filter has followed.
     pub(super) heading: [[f64; 2]; 2],
+    /// How far the machine turns about the ground's normal within the memory of the attitude's filter, left > 0, as
+    /// roll and as pitch have it, rad: a unit that leans as it turns feels of that turn a roll and a pitch.
+    pub(super) turned_rad: [f64; 2],
     /// What it says of each wheel.
     pub(super) wheels: PerWheel<AtWheel>,
 }

@@ -247,10 +247,12 @@ fn ground_speeds(
     PerWheel::from_fn(|w| {
         let e = &effects.wheels[w];
         let rolls = s.smooth_wheel_speed_rad_s[w][i] / e.wheel_speed_scale.factor * radius_m[w];
-        let turns = moves.turns_rad_s[w] * radius_m[w];
+        // Arms swing by more than a sensor reads that reads in proportion too little.
+        let swings = 1.0 / e.stroke_scale.factor;
+        let turns = swings * moves.turns_rad_s[w] * radius_m[w];
         // Turned on its arm and with its arm it rolls; less what it is carried ahead of its frame.
         let travels = (rolls + turns) * (1.0 - e.slippery_ground.slip) - traction.creeps_m_s[w];
-        travels - moves.carried_m_s[w]
+        travels - swings * moves.carried_m_s[w]
     })
 }
 

@@ -166,8 +166,11 @@ fn judge(
     let plane = Plane::through(&feet)?;
     let contact_m = PerWheel::from_fn(|w| plane.error_m(&feet[w]));
     let imu = &effects.sensors.imu_offset;
-    let [roll, pitch] =
-        [instant.attitude_rad[0] - imu.roll_rad, instant.attitude_rad[1] - imu.pitch_rad];
+    // What the unit feels of a turn, leaning as it is mounted on a frame that leans: right side high is a turn
+    // against the ahead axis, nose up one against the left.
+    let [about_ahead, about_left] = [plane.slope_x - imu.pitch_rad, plane.slope_y + imu.roll_rad];
+    let roll = instant.attitude_rad[0] - imu.roll_rad - instant.turned_rad[0] * about_ahead;
+    let pitch = instant.attitude_rad[1] - imu.pitch_rad - instant.turned_rad[1] * about_left;
     let [nose_rad, left_rad] = ground.attitude_rad(instant.heading);
     let lean_rad = [plane.slope_y - left_rad - roll, nose_rad - plane.slope_x - pitch];
     if !instant.is_calm {

@@ -9,7 +9,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine};
 
 use super::lean::planes;
 use super::motion::Motion;
-use crate::diagnosis::signals::{Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Share of the turned angle that the filter keeps a tick: 2 s for roll, 1 s for pitch (facts 5).
 const KEEP: [f64; 2] = [0.995, 0.99];
@@ -56,6 +56,22 @@ pub(super) fn headings_felt(heading_rad: &Samples) -> [[Samples; 2]; 2] {
             };
             part.map(follow).collect()
         })
+    })
+}
+
+/// How far a machine that turns at `turn_rad_s` does so within the memory of the filters of roll and of pitch, rad.
+///
+/// A frame that stands nose down on its arms turns about the ground's normal and not about its own: the gyroscope of
+/// its roll feels a part of the turn, and the filter takes that for a roll until the accelerometer has taken it back.
+#[must_use]
+pub(super) fn turned_rad(turn_rad_s: &Samples) -> [Samples; 2] {
+    KEEP.map(|keep| {
+        let mut turned = 0.0;
+        let step = |rate: &f64| {
+            turned = keep * (turned + rate * DT_S);
+            turned
+        };
+        turn_rad_s.iter().map(step).collect()
     })
 }
 

@@ -2,7 +2,7 @@
 
 use xt28_machine::{Machine, PerWheel, Wheel};
 
-use super::filter::{felt_rad, headings_felt};
+use super::filter::{felt_rad, headings_felt, turned_rad};
 use super::motion::{Motion, lagged};
 use crate::diagnosis::gauge::rod_n;
 use crate::diagnosis::generator::circuits::motor_nm;
@@ -42,6 +42,7 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
     let attitude = [still(&s.roll_rad, &felt[0]), still(&s.pitch_rad, &felt[1])];
     let acceleration = [late(&motion.left_m_s2), late(&motion.ahead_m_s2)];
     let heading = headings_felt(&headings(s, &motion)).map(|felt| felt.map(|part| late(&part)));
+    let turned = turned_rad(&motion.turn_rad_s).map(|angle| late(&angle));
     let (doubt, held) = (doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
     (STRIDE..s.len)
@@ -56,6 +57,7 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
             attitude_rad: [attitude[0][i], attitude[1][i]],
             acceleration_m_s2: [acceleration[0][i], acceleration[1][i]],
             heading: [0, 1].map(|angle| [0, 1].map(|part| heading[angle][part][i])),
+            turned_rad: [turned[0][i], turned[1][i]],
             wheels: PerWheel::from_fn(|w| wheels[w](i)),
         })
         .collect()

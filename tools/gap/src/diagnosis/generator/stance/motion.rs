@@ -4,6 +4,8 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 use xt28_sim::{Effects, Parts};
 
+use crate::diagnosis::generator::axles::Axles;
+use crate::diagnosis::generator::press::{normal_n, own_n};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
@@ -12,6 +14,8 @@ const HALF_SPAN: usize = 10;
 const CALM_M_S2: f64 = 0.1;
 /// A cylinder that carries less may have its wheel in the air, N.
 const CARRYING_N: f64 = 5_000.0;
+/// What an axle presses the ground with at the least, N: one alone does not say how the machine turns.
+const LEAST_N: f64 = 100.0;
 /// Samples until the machine has stopped rocking after that: one second.
 const ROCKING: usize = 100;
 /// Half of the stroke by which an arm that stands still may seem to move, m: readings flicker.
@@ -70,18 +74,25 @@ fn speeds(s: &Signals, machine: &Machine) -> Samples {
     (0..s.len).map(step).collect()
 }
 
-/// Yaw rates of the front frame, rad/s: two frames that roll without side slip about their joint.
+/// Yaw rates of the front frame, rad/s: three axles slip sideways as little as they can, each counted by what it
+/// presses the ground with. Arms lift wheels, and an axle in the air does not say where its frame goes.
 fn turn_rates(s: &Signals, machine: &Machine, speed_m_s: &Samples) -> Samples {
-    let joint_x = machine.articulation.front_joint_x_m;
-    let ahead_m = machine.wheels.axle_x_m[0] - joint_x;
-    let behind_m = joint_x - machine.wheels.axle_x_m[1];
-    let rate = slope(&s.joint_rad[0]);
-    (0..s.len)
-        .map(|i| {
-            let (sin, cos) = s.joint_rad[0][i].sin_cos();
-            (speed_m_s[i] * sin + behind_m * rate[i]) / (ahead_m * cos + behind_m)
-        })
-        .collect()
+    let axles = Axles::new(machine);
+    let parts = Parts::new(machine, &Effects::default());
+    let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
+    let joint_rates = [0, 1].map(|joint: usize| slope(&s.joint_rad[joint]));
+    let at = |i: usize| {
+        let mut load_n = [LEAST_N; 3];
+        for w in Wheel::ALL {
+            let pose = parts.linkage.at_stroke(s.smooth_stroke_m[w][i]);
+            let pressed_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose);
+            load_n[w.axle() as usize] += pressed_n.max(0.0);
+        }
+        let angle = [0, 1].map(|joint: usize| s.joint_rad[joint][i]);
+        let rate = [0, 1].map(|joint: usize| joint_rates[joint][i]);
+        axles.rolling_under(load_n, angle, rate, speed_m_s[i]).turn_rad_s[0]
+    };
+    (0..s.len).map(at).collect()
 }
 
 /// Central differences.

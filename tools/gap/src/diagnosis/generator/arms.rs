@@ -61,3 +61,52 @@ fn seen_friction_n(stiction: &SealStiction, rate_m_s: &Samples) -> Samples {
     };
     rate_m_s.iter().map(step).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::Effects;
+
+    use super::super::still::still;
+    use super::*;
+    use crate::diagnosis::signals::DT_S;
+
+    /// A machine whose valves open for 4 s while its joints turn, on a pump that runs short by the law number `law`.
+    fn short_of_oil(law: usize, effects: &Effects) -> Signals {
+        let (machine, mut s) = (Machine::xt28(), still(15));
+        for w in Wheel::ALL {
+            s.chamber_pa[w] = [Vec::new(), Vec::new()];
+            s.cylinder_load_n[w].fill(6.0e4);
+            s.opening[w][500..900].fill(if w == Wheel::Fl { 0.4 } else { -0.4 });
+        }
+        s.steer_opening[0][500..900].fill(0.8);
+        let share = pump::flow_shares(&s, &machine, effects).swap_remove(law);
+        for w in Wheel::ALL {
+            let asked = ArmDrive::new(&s, &machine, effects, w).speeds_asked_m_s();
+            let mut stroke_m = 0.25;
+            for i in 1..s.len {
+                s.stroke_m[w][i - 1] = stroke_m;
+                stroke_m += share[i - 1] * asked[i - 1] * DT_S;
+            }
+            s.stroke_m[w][s.len - 1] = stroke_m;
+        }
+        s
+    }
+
+    #[test]
+    fn an_arm_says_what_else_its_pump_has_to_give() {
+        let machine = Machine::xt28();
+        let mut effects = Effects::default();
+        effects.pump_flow.flow_m3_s = 1.0e-3;
+        let largest_m = |errors: &Samples| errors.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+        for law in 0..4 {
+            let s = short_of_oil(law, &effects);
+            let error_m = largest_m(&stroke_error_m(&s, &machine, (&effects).into(), Wheel::Fl));
+            // The damper's share of a load that is held is not in it.
+            assert!(error_m < 1.0e-3, "law {law}: {error_m} m");
+            let shares = pump::flow_shares(&s, &machine, &effects);
+            let drive = ArmDrive::new(&s, &machine, &effects, Wheel::Fl);
+            let other_m = largest_m(&drive.stroke_errors_m(&shares[3 - law]).0);
+            assert!(other_m > 5.0 * error_m, "law {law}: {other_m} m");
+        }
+    }
+}

@@ -64,3 +64,25 @@ fn joints_m3_s(
     };
     (0..signals.len).map(asked).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::still::still;
+    use super::*;
+
+    #[test]
+    fn what_else_a_pump_feeds_leaves_less_for_the_arms() {
+        let (machine, mut s, mut effects) = (Machine::xt28(), still(10), Effects::default());
+        for w in Wheel::ALL {
+            s.opening[w].fill(if w == Wheel::Fl { 0.5 } else { -0.5 });
+        }
+        s.steer_opening[0].fill(0.8);
+        assert!(flow_shares(&s, &machine, &effects)[0].is_empty());
+        effects.pump_flow.flow_m3_s = 1.0e-3;
+        let [ours, by_bore, no_joints, neither] =
+            flow_shares(&s, &machine, &effects).try_into().unwrap();
+        let last = s.len - 1;
+        assert!(neither[last] < no_joints[last] && by_bore[last] < ours[last]);
+        assert!(by_bore[last] < neither[last] && neither[last] < 1.0, "{by_bore:?}");
+    }
+}

@@ -356,4 +356,28 @@ mod tests {
             assert!(left < 0.6 * other, "{left}, with {others:?} {other}");
         }
     }
+
+    #[test]
+    fn arms_swing_by_more_than_a_sensor_reads_that_reads_too_little() {
+        let (machine, mut s, factor) = (Machine::xt28(), swinging(), 0.8);
+        for (k, moves) in wheel_kinematics(&s, &machine).iter().enumerate() {
+            for w in Wheel::ALL {
+                // A wheel that rolls to where its arm puts it.
+                let rolls_rad_s =
+                    moves.carried_m_s[w] / machine.wheels.radius_m - moves.turns_rad_s[w];
+                s.smooth_wheel_speed_rad_s[w][k * STRIDE..(k + 1) * STRIDE]
+                    .fill(rolls_rad_s / factor);
+            }
+        }
+        let largest = |scale: f64| {
+            let mut effects = Effects::default();
+            effects.wheels.0.iter_mut().for_each(|e| e.stroke_scale.factor = scale);
+            let errors = rolling_errors(&s, &machine, &effects).wheel_rad_s;
+            let of = |(_, e): (_, &Samples)| {
+                e[300..1900].iter().fold(0.0_f64, |most, e| most.max(e.abs()))
+            };
+            errors.iter().map(of).fold(0.0, f64::max)
+        };
+        assert!(largest(factor) < 0.1 * largest(1.0), "{} of {}", largest(factor), largest(1.0));
+    }
 }

@@ -182,4 +182,21 @@ mod tests {
         let felt = Felt { lean_rad: vec![], tip_rad: vec![], keep: KEEP[0] };
         assert!(felt.beside_lean_rad(&vec![]).is_empty());
     }
+
+    /// A frame that stands nose down by 0.02 rad on its arms and goes round to the left on level ground.
+    #[test]
+    fn a_turn_is_felt_as_a_roll_by_a_unit_that_leans() {
+        let (turn_rad_s, nose_down_rad) = (0.1_f64, 0.02_f64);
+        // Up, in the unit's axes: ahead, left, up.
+        let up = [nose_down_rad.sin(), 0.0, nose_down_rad.cos()];
+        // Right side high is a turn against the ahead axis; the accelerometer feels none.
+        let rolls_rad_s = -turn_rad_s * up[0];
+        let [keep, _] = KEEP;
+        let reading = (0..1000).fold(0.0, |angle, _| keep * (angle + rolls_rad_s * DT_S));
+        let turned = turned_rad(&vec![turn_rad_s; 1000]);
+        // The ground rises ahead of a frame that stands nose down.
+        let ground_rises = nose_down_rad.tan();
+        assert!((turned[0][999] * ground_rises + reading).abs() < 1e-5, "{reading}");
+        assert!(reading < -0.003, "{reading}");
+    }
 }

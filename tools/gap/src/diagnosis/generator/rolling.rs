@@ -4,6 +4,8 @@
 //! A wheel speed sensor sits on the arm. When an arm swings at standstill, its wheel rolls to where
 //! the arm puts it, and the sensor turns with the arm beside it; both are known from the stroke.
 
+mod creep;
+
 use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
 use xt28_sim::{Effects, Parts};
 
@@ -15,6 +17,7 @@ use super::stance::{Held, Holds};
 use super::traction::Traction;
 use crate::diagnosis::kinematics::Kinematics;
 use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals};
+use creep::{creeping, creeps_at_most};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
 #[derive(Clone, Debug)]
@@ -52,49 +55,14 @@ pub(super) fn rolling_errors(s: &Signals, machine: &Machine, effects: &Effects) 
     let free = held_errors(s, machine, effects, None);
     let parts = Parts::new(machine, effects);
     let Some(held) = Held::new(s, machine, effects, &parts, 0.0) else {
-        return if rolls_harder(effects) { creeping(s, machine, effects, &free) } else { free };
+        let most_m_s_n = creeps_at_most(machine, effects, &parts);
+        let creep = most_m_s_n.iter().any(|(_, most)| *most > 0.0);
+        return if creep { creeping(s, machine, effects, &free, &most_m_s_n) } else { free };
     };
     let left = |holds: &Holds| left_m2_s2(&free, holds, parts.radius_m);
     let holds = CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n));
     let best = holds.iter().min_by(|a, b| left(a).total_cmp(&left(b)));
     held_errors(s, machine, effects, best)
-}
-
-/// Whether some wheel rolls harder than is known: what resists it goes with its load, so that the ground pushes
-/// the lighter ones along, or holds them, even where all have one coefficient.
-fn rolls_harder(effects: &Effects) -> bool {
-    effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0)
-}
-
-/// Rolling on tyres that all creep by what leaves least: `free` is what is left of wheels that do not. A wheel that
-/// rolls harder than others is pushed by the ground, and turns the slower.
-fn creeping(
-    s: &Signals,
-    machine: &Machine,
-    effects: &Effects,
-    free: &RollingErrors,
-) -> RollingErrors {
-    let on = |creep_m_s_n: f64| {
-        let mut effects = effects.clone();
-        for wheel in Wheel::ALL {
-            effects.wheels[wheel].slippery_ground.creep_m_s_n += creep_m_s_n;
-        }
-        held_errors(s, machine, &effects, None)
-    };
-    let most_m_s_n = CREEPS_M_S_N[CREEPS_M_S_N.len() - 1];
-    let most = on(most_m_s_n);
-    // What tyres take of an error is in proportion to how they creep.
-    let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
-    for wheel in Wheel::ALL {
-        for (free, most) in free.wheel_rad_s[wheel].iter().zip(&most.wheel_rad_s[wheel]) {
-            let taken = free - most;
-            if taken.is_finite() {
-                product += taken * free;
-                square += taken * taken;
-            }
-        }
-    }
-    on((product / square).clamp(0.0, 1.0) * most_m_s_n)
 }
 
 /// Squares of what is about left of the wheels' speeds where `holds` drag their feet, of which none but
@@ -379,5 +347,30 @@ mod tests {
             errors.iter().map(of).fold(0.0, f64::max)
         };
         assert!(largest(factor) < 0.1 * largest(1.0), "{} of {}", largest(factor), largest(1.0));
+    }
+
+    /// Left wheels that give way along the ground as they push, all pushed alike by 1.5 kNm.
+    #[test]
+    fn tyres_that_are_softer_may_creep_as_well() {
+        let (mut s, machine) = (dragged(0.0), Machine::xt28());
+        for w in Wheel::ALL.into_iter().filter(|w| w.side() == Side::Left) {
+            for speed in [&mut s.smooth_wheel_speed_rad_s[w], &mut s.wheel_speed_rad_s[w]] {
+                speed.iter_mut().for_each(|rad_s| *rad_s += 0.04);
+            }
+        }
+        let largest = |stiffness_n_m: Option<f64>| {
+            let mut effects = Effects::default();
+            for w in Wheel::ALL.into_iter().filter(|w| w.side() == Side::Left) {
+                if let Some(stiffness_n_m) = stiffness_n_m {
+                    effects.wheels[w].soft_tyre.stiffness_n_m = stiffness_n_m;
+                }
+            }
+            let errors = rolling_errors(&s, &machine, &effects).wheel_rad_s;
+            let of =
+                |(_, e): (_, &Samples)| e[500..1500].iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+            errors.iter().map(of).fold(0.0, f64::max)
+        };
+        let [stiff, soft] = [None, Some(2.0e6)].map(largest);
+        assert!(soft < 0.3 * stiff, "{soft} of {stiff}");
     }
 }

@@ -7,11 +7,24 @@ use crate::effects::AccumulatorGas;
 /// Stiffness of the oil without gas, N/m (assumed: some 1 GPa of oil modulus on a quarter of a metre of
 /// the bore).
 pub(super) const OIL_STIFFNESS_N_M: f64 = 3.0e7;
-/// Share of its length to which the gas is known, and steps after which it is at the latest.
-const SOLVED: f64 = 1.0e-13;
+/// Share of its length by which a step of Newton's rule moves the end of the gas at most where that is then known to
+/// rounding, as a step leaves about the square of the one before; and steps after which it is at the latest.
+const SOLVED: f64 = 1.0e-8;
 const STEPS: usize = 64;
 /// Least share of its length from which it is sought.
 const LEAST_LEFT: f64 = 1.0e-3;
+/// Share of its length by which the gas is led on by a series of few terms.
+const SHORT: f64 = 0.02;
+/// One over the number of each of its terms: of that share, and exponents up to 2, more are below rounding.
+const SERIES: [f64; 10] = {
+    let mut inverse = [0.0; 10];
+    let mut k = 0;
+    while k < inverse.len() {
+        inverse[k] = 1.0 / (k as f64 + 1.0);
+        k += 1;
+    }
+    inverse
+};
 /// Pressure of the atmosphere, Pa: gas laws take absolute pressures.
 const ATMOSPHERE_PA: f64 = 1.013e5;
 
@@ -76,22 +89,38 @@ impl Accumulator {
     /// By Newton's rule from where the gas would be without the oil: the misfit is convex in the length
     /// of the gas and that start too short, so every step goes towards the root and none beyond.
     fn gas(&self, compression_m: f64) -> [f64; 2] {
-        let bears = |left: f64| {
-            let gas_n = self.precharge_n * left.powf(-self.exponent);
-            [gas_n, self.exponent * gas_n / (left * self.gas_m)]
-        };
+        let slope_n_m = |gas_n: f64, left: f64| self.exponent * gas_n / (left * self.gas_m);
         let mut left = (1.0 - (compression_m - self.filling_m) / self.gas_m).max(LEAST_LEFT);
+        let mut gas_n = self.precharge_n * left.powf(-self.exponent);
         for _ in 0..STEPS {
-            let [gas_n, gas_n_m] = bears(left);
+            let gas_n_m = slope_n_m(gas_n, left);
             let oil_m = (gas_n - self.back_n) / OIL_STIFFNESS_N_M;
             let misfit_m = oil_m + self.gas_m * (1.0 - left) - compression_m;
             let by = misfit_m / (self.gas_m * (1.0 + gas_n_m / OIL_STIFFNESS_N_M));
+            gas_n *= self.bears_more(by / left);
             left += by;
             if by.abs() < SOLVED {
                 break;
             }
         }
-        bears(left)
+        [gas_n, slope_n_m(gas_n, left)]
+    }
+
+    /// How many times what it bears the gas bears once it is longer by `share` of its length: (1 + share)^-n, by its
+    /// series where that is short. Newton's steps are, and a power is most of what they cost.
+    fn bears_more(&self, share: f64) -> f64 {
+        if share.abs() > SHORT {
+            return (1.0 + share).powf(-self.exponent);
+        }
+        let (mut sum, mut term) = (1.0, 1.0);
+        for (k, inverse) in (0_u32..).zip(SERIES) {
+            term *= share * (-self.exponent - f64::from(k)) * inverse;
+            sum += term;
+            if f64::abs(term) < f64::EPSILON / 4.0 {
+                break;
+            }
+        }
+        sum
     }
 
     /// Compression at which `share` of this force and a linear spring of `beside_n_m` make `force_n`,
@@ -106,20 +135,25 @@ impl Accumulator {
             return force_n / oil_n_m;
         }
         let mut left = (self.precharge_n / (force_n + self.back_n)).powf(self.exponent.recip());
-        let mut compression_m = 0.0;
+        // By the choice of that length.
+        let mut gas_n = force_n + self.back_n;
+        let gives_m = |gas_n: f64, left: f64| {
+            (gas_n - self.back_n) / OIL_STIFFNESS_N_M + self.gas_m * (1.0 - left)
+        };
         for _ in 0..STEPS {
-            let gas_n = self.precharge_n * left.powf(-self.exponent);
             let gas_n_by_left = -self.exponent * gas_n / left;
-            compression_m = (gas_n - self.back_n) / OIL_STIFFNESS_N_M + self.gas_m * (1.0 - left);
+            let compression_m = gives_m(gas_n, left);
             let by_left = gas_n_by_left / OIL_STIFFNESS_N_M - self.gas_m;
             let misfit_n = share * (gas_n - self.back_n) + beside_n_m * compression_m - force_n;
             let next = left - misfit_n / (share * gas_n_by_left + beside_n_m * by_left);
             let by = next.max(LEAST_LEFT) - left;
+            gas_n *= self.bears_more(by / left);
             left += by;
             if by.abs() < SOLVED {
                 break;
             }
         }
+        let compression_m = gives_m(gas_n, left);
         if compression_m <= self.top_m {
             return compression_m;
         }
@@ -169,6 +203,16 @@ mod tests {
             let slope_n_m = (above - below) / (2.0 * d);
             let [_, said_n_m] = accumulator.spring(compression_m);
             assert!((slope_n_m / said_n_m - 1.0).abs() < 1e-4, "{compression_m}: {slope_n_m}");
+        }
+    }
+
+    #[test]
+    fn what_the_gas_bears_more_is_its_power_near_and_far() {
+        let (_, gas, accumulator) = accumulator();
+        for share in [0.0, 1e-12, -1e-7, 3e-4, -0.0199, 0.0199, 0.0201, -0.6, 4.0] {
+            let want = (1.0_f64 + share).powf(-gas.exponent);
+            let made = accumulator.bears_more(share);
+            assert!((made / want - 1.0).abs() < 1e-15, "{share}: {made}, not {want}");
         }
     }
 }

@@ -41,16 +41,7 @@ impl Verdict {
             .into_iter()
             .flatten()
             .filter_map(|(name, value)| {
-                let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64))?;
-                let found = first["parameters"][name].as_array().map_or_else(
-                    || "-".to_owned(),
-                    |of| {
-                        let [at, low, high] = [0, 1, 2].map(|k| of.get(k).and_then(Value::as_f64));
-                        let show = |n: Option<f64>| n.map_or_else(|| "-".to_owned(), short);
-                        format!("{} [{} {}]", show(at), show(low), show(high))
-                    },
-                );
-                Some(format!("{name} {}, {found}", short(number)))
+                Some(size(name, number(value)?, &first["parameters"][name]))
             })
             .collect();
         format!(
@@ -69,6 +60,18 @@ impl Verdict {
     fn probability(&self) -> f64 {
         self.first()["probability"].as_f64().unwrap_or(0.0)
     }
+}
+
+/// A number of an overlay.
+#[allow(clippy::cast_precision_loss)] // as written by hand
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+/// A size that is true, beside the one found with its interval.
+fn size(name: &str, is: f64, found: &Value) -> String {
+    let show = |k: usize| found[k].as_f64().map_or_else(|| "-".to_owned(), short);
+    format!("{name} {}, {} [{} {}]", short(is), show(0), show(1), show(2))
 }
 
 /// Three digits, whatever the size.

@@ -32,13 +32,7 @@ impl Bench {
     /// # Errors
     /// When the command cannot be built or run, or its report has other fields.
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
-        let build = Command::new(env!("CARGO"))
-            .current_dir(&workspace.root)
-            .args(["build", "--release", "--locked", "--package=xt28"])
-            .status()?;
-        if !build.success() {
-            return Err("cargo could not build xt28".into());
-        }
+        workspace.build_release(&["--package=xt28"])?;
         println!("scenario            {}, quickest of {} runs", self.scenario, self.runs);
         let mut repeats = true;
         for solver in ["rapier", "reduced"] {
@@ -73,7 +67,7 @@ impl Bench {
     }
 
     fn run(&self, workspace: &Workspace, solver: &str, log: &std::path::Path) -> Outcome<Figures> {
-        let program = workspace.target.join("release").join("xt28");
+        let program = workspace.release().join("xt28");
         // Pinned where the system can: the figure is for one core.
         let pinned = Command::new("taskset").arg("--version").output().is_ok();
         let mut command = if pinned { Command::new("taskset") } else { Command::new(&program) };

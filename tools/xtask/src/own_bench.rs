@@ -45,13 +45,7 @@ impl OwnBench {
     /// # Errors
     /// When the command cannot be built, or does not do what it is asked.
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
-        let build = Command::new(env!("CARGO"))
-            .current_dir(&workspace.root)
-            .args(["build", "--release", "--locked", "--package=xt28"])
-            .status()?;
-        if !build.success() {
-            return Err("cargo could not build xt28".into());
-        }
+        workspace.build_release(&["--package=xt28"])?;
         let temporary = tempfile::tempdir()?;
         let folder = self.keep.as_deref().unwrap_or(temporary.path());
         fs::create_dir_all(folder)?;
@@ -152,7 +146,7 @@ fn drives(workspace: &Workspace, folder: &Path) -> Outcome<Vec<PathBuf>> {
 }
 
 fn xt28(workspace: &Workspace) -> Command {
-    Command::new(workspace.target.join("release").join("xt28"))
+    Command::new(workspace.release().join("xt28"))
 }
 
 /// Runs a command that may say that a machine is not as wanted (1), and nothing worse.

@@ -37,6 +37,24 @@ impl Workspace {
         })
     }
 
+    /// Folder of what [`Self::build_release`] builds.
+    pub(crate) fn release(&self) -> PathBuf {
+        self.target.join("release")
+    }
+
+    /// Builds with optimisation what `arguments` of `cargo build` select.
+    ///
+    /// # Errors
+    /// When cargo cannot.
+    pub(crate) fn build_release(&self, arguments: &[&str]) -> Outcome<()> {
+        let mut build = Command::new(env!("CARGO"));
+        build.current_dir(&self.root).args(["build", "--release", "--locked"]).args(arguments);
+        if build.status()?.success() {
+            return Ok(());
+        }
+        Err(format!("cargo could not build {}", arguments.join(" ")).into())
+    }
+
     /// Paths below the root that git tracks, or that it would if asked to add everything.
     ///
     /// # Errors

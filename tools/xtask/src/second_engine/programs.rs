@@ -49,12 +49,7 @@ impl Programs {
     /// # Errors
     /// When something cannot be built or installed; the message says the remedy.
     pub(crate) fn prepare(workspace: &Workspace, machine: &Path) -> Outcome<Self> {
-        let mut build = Command::new(env!("CARGO"));
-        build.current_dir(&workspace.root);
-        build.args(["build", "--release", "--locked", "--package=xt28-sim", "--examples"]);
-        if !build.status()?.success() {
-            return Err("cargo could not build the examples of xt28-sim".into());
-        }
+        workspace.build_release(&["--package=xt28-sim", "--examples"])?;
         let grids = workspace.target.join("second-engine");
         // Grids of another day may be of other terrain files.
         if grids.exists() {
@@ -63,7 +58,7 @@ impl Programs {
         fs::create_dir_all(&grids)?;
         Ok(Self {
             root: workspace.root.clone(),
-            examples: workspace.target.join("release").join("examples"),
+            examples: workspace.release().join("examples"),
             python: python(workspace)?,
             grids,
             machine: workspace.root.join(machine),

@@ -1,6 +1,6 @@
 //! What a wheel presses the ground with, and what radius that leaves it to roll on.
 
-use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::Parts;
 
 /// Share of a tyre's deflection by which the radius is smaller that it rolls on: a third is a radial
@@ -16,6 +16,20 @@ pub(super) fn own_n(machine: &Machine, parts: &Parts, wheel: Wheel) -> f64 {
 /// What a wheel of its own weight `own_n` presses with at rest where its cylinder carries `load_n`, N.
 pub(super) fn normal_n(own_n: f64, load_n: f64, pose: &ArmPose) -> f64 {
     (own_n + load_n * pose.lever_m / pose.reach_m).max(0.0)
+}
+
+/// What both wheels of each axle press with, front to rear, N: of their own weights, the loads of their cylinders and
+/// how their arms stand.
+pub(super) fn axles_n(
+    own_n: &PerWheel<f64>,
+    load_n: &PerWheel<f64>,
+    pose: &PerWheel<ArmPose>,
+) -> [f64; 3] {
+    let mut axles_n = [0.0; 3];
+    for w in Wheel::ALL {
+        axles_n[w.axle() as usize] += normal_n(own_n[w], load_n[w], &pose[w]);
+    }
+    axles_n
 }
 
 /// Radius that a wheel pressed by `normal_n` rolls on, m: less than `nominal`'s by what its tyre is softer.

@@ -5,13 +5,13 @@
 //! that is not where its sensor says, or has been there for a while. The speed is the receiver's own: what
 //! wheels do shows elsewhere, and a receiver that is late is late in both.
 
-use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{Effects, Parts};
 
 use super::STRIDE;
 use super::axles::Axles;
 use super::grade::Grade;
-use super::press::{normal_n, own_n};
+use super::press::{axles_n, own_n};
 use super::rolling::{self, wheel_kinematics};
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
@@ -97,14 +97,11 @@ fn said_by_joints(s: &Signals, machine: &Machine, late_s: f64) -> Samples {
         let i = ((at_s - late_s) / DT_S).round().max(0.0) as usize;
         let moves = kinematics.get(i / LOOK);
         let (Some(ahead_m_s), Some(moves)) = (ahead_m_s, moves) else { return f64::NAN };
-        let mut load_n = [0.0; 3];
-        for w in Wheel::ALL {
-            load_n[w.axle() as usize] +=
-                normal_n(own_n[w], s.cylinder_load_n[w][i], &moves.pose[w]);
-        }
+        let load_n = PerWheel::from_fn(|w| s.cylinder_load_n[w][i]);
+        let pressed_n = axles_n(&own_n, &load_n, &moves.pose);
         let [angle, rate] =
             [&s.joint_rad, &s.joint_rate_rad_s].map(|of| [0, 1].map(|joint: usize| of[joint][i]));
-        axles.rolling_under(load_n, angle, rate, ahead_m_s).turn_rad_s[0]
+        axles.rolling_under(pressed_n, angle, rate, ahead_m_s).turn_rad_s[0]
     };
     (0..looks).map(at).collect()
 }
@@ -151,6 +148,8 @@ fn rate_read(s: &Signals, at_s: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
+
     use super::super::still::still;
     use super::*;
 

@@ -5,7 +5,7 @@ use xt28_sim::effects::Lag;
 use xt28_sim::{Effects, Parts};
 
 use crate::diagnosis::generator::axles::Axles;
-use crate::diagnosis::generator::press::{normal_n, own_n};
+use crate::diagnosis::generator::press::{axles_n, own_n};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
@@ -82,15 +82,12 @@ fn turn_rates(s: &Signals, machine: &Machine, speed_m_s: &Samples) -> Samples {
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
     let joint_rates = [0, 1].map(|joint: usize| slope(&s.joint_rad[joint]));
     let at = |i: usize| {
-        let mut load_n = [LEAST_N; 3];
-        for w in Wheel::ALL {
-            let pose = parts.linkage.at_stroke(s.smooth_stroke_m[w][i]);
-            let pressed_n = normal_n(own_n[w], s.cylinder_load_n[w][i], &pose);
-            load_n[w.axle() as usize] += pressed_n.max(0.0);
-        }
+        let pose = PerWheel::from_fn(|w| parts.linkage.at_stroke(s.smooth_stroke_m[w][i]));
+        let load_n = PerWheel::from_fn(|w| s.cylinder_load_n[w][i]);
+        let pressed_n = axles_n(&own_n, &load_n, &pose).map(|axle_n| axle_n + LEAST_N);
         let angle = [0, 1].map(|joint: usize| s.joint_rad[joint][i]);
         let rate = [0, 1].map(|joint: usize| joint_rates[joint][i]);
-        axles.rolling_under(load_n, angle, rate, speed_m_s[i]).turn_rad_s[0]
+        axles.rolling_under(pressed_n, angle, rate, speed_m_s[i]).turn_rad_s[0]
     };
     (0..s.len).map(at).collect()
 }

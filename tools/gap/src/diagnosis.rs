@@ -51,7 +51,7 @@ pub use candidates::Candidate;
 pub use chamber_order::{SwappedChambers, swapped_chambers};
 pub use details::Details;
 pub use diagnose::Progress;
-pub use evidence::{Echo, Evidence, Left};
+pub use evidence::{Echo, Evidence, Left, Uneven};
 pub use excitation::not_testable;
 pub use floor::{Floor, Signal};
 pub use floors::{BlockKey, Floors};

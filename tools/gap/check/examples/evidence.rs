@@ -12,7 +12,7 @@
 
 use std::path::PathBuf;
 
-use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Knob, Signals};
+use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Knob, Signals, Uneven};
 use xt28_gap_check::Source;
 use xt28_sim::Effects;
 use xt28_sim::effects::find;
@@ -41,7 +41,8 @@ fn main() -> Result<(), String> {
             inquiry = inquiry.without(effect);
         }
         let findings = inquiry.findings(&|_| ());
-        println!("{}: left over {:.2}", case.name(), findings.left_over());
+        let why = findings.left_over_why();
+        println!("{}: left over {:.2}: {why}", case.name(), findings.left_over());
         if let Some((times, why)) = findings.left_over_held() {
             println!("  held out {times:.2}: {why}");
         }
@@ -76,6 +77,16 @@ fn print(findings: &Findings) {
     echoes.sort_by(|a, b| b.nats.total_cmp(&a.nats));
     for Echo { generator, signal, nats, explained, .. } in echoes.into_iter().take(LOUDEST) {
         println!("    {generator} {signal}: {nats:.1} nats of echo, {explained:.0} explained");
+    }
+    let mut unevens: Vec<&Uneven> = findings.unevens.iter().collect();
+    unevens.sort_by(|a, b| b.nats().total_cmp(&a.nats()));
+    for uneven in unevens.into_iter().take(LOUDEST) {
+        let (Uneven { generator, signal, half, .. }, [out, within]) = (uneven, uneven.sizes());
+        println!(
+            "    {generator} {signal}: {:.1} nats for sizes of {out:.2} and {within:.2} by {half:?}, {:.0} explained",
+            uneven.nats(),
+            uneven.explained()
+        );
     }
 }
 

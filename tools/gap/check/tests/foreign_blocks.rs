@@ -1,7 +1,7 @@
 //! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
 use xt28_gap::diagnosis::{
-    Base, Evidence, Fit, Generator, Hypothesis, Knob, Residual, Signal, Signals,
+    Base, Belief, Evidence, Fit, Generator, Hypothesis, Knob, Residual, Signal, Signals, Uneven,
 };
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
@@ -108,11 +108,32 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
         let hypothesis = hypothesis(effect, scope);
         let fit = hypothesis.refit(&evidence, 0.0, &[0.18]);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
-        evidence.echoes(&effects, &Effects::default())[0]
+        evidence.again(&effects, &Effects::default()).0[0]
     };
     let [late, slow] = ["arm-delay", "valve-lag"].map(echo);
     assert!(slow.explained > 0.7 * late.explained, "{late:?} {slow:?}");
     assert!(late.nats < 3.0 && slow.nats > 12.0, "{late:?} {slow:?}");
+}
+
+#[test]
+fn a_scale_that_stands_for_a_bias_is_of_two_sizes() {
+    let off = Case::of(4_240_833_300, Cause::find("pressure-bias").unwrap(), Scope::One(Wheel::Ml));
+    let runs =
+        [Manoeuvre::SingleArm, Manoeuvre::Multisine].map(|drive| signals(off.only(drive, 36.0)));
+    let (runs, machine) = (runs.concat(), Machine::xt28());
+    let watched = vec![Generator::ArmStroke(Wheel::Ml)];
+    let evidence = Evidence::watching(watched, &runs, &machine, Effects::default(), &Knob::all());
+    let parting = |effect, from: &[f64]| {
+        let hypothesis = hypothesis(effect, effects::Scope::Wheel(Wheel::Ml));
+        let fit = hypothesis.refit(&evidence, 10.8, from);
+        let effects = hypothesis.applied(&Effects::default(), &fit.values);
+        let belief = Belief { effects: &effects, from_s: 10.8 };
+        let unevens = evidence.again(belief, &Effects::default()).1;
+        unevens.iter().map(Uneven::nats).fold(0.0, f64::max)
+    };
+    let (bias, scale) =
+        (parting("pressure-bias", &[-4.0e5]), parting("pressure-scale", &[0.9, 0.0]));
+    assert!(bias < 3.0 && scale > 8.0, "{bias} {scale}");
 }
 
 #[test]
@@ -142,7 +163,7 @@ fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let both = scale.applied(&base.effects, &[1.0431]);
     let watched = vec![Generator::ArmStroke(Wheel::Fr)];
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), base, &Knob::all());
-    let echo = evidence.echoes(&both, &nothing)[0];
+    let echo = evidence.again(&both, &nothing).0[0];
     assert!(echo.explained > 1.0e4 && echo.nats < 10.0, "{echo:?}");
 }
 

@@ -6,7 +6,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Parameter};
 
 use super::belief::{Base, Belief};
-use super::evidence::{Echo, Evidence, Left};
+use super::evidence::{Echo, Evidence, Left, Uneven};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::overlap::Paid;
@@ -190,10 +190,19 @@ impl<'a> Docket<'a> {
     }
 
     /// How much of what is left there is what `fits` and the base explain of what `nothing` leaves, moved
-    /// in time.
-    pub(super) fn echoes(&self, fits: &[&Fit], nothing: &Effects) -> Vec<Echo> {
+    /// in time; and whether, in all runs, that is another share of it in one half than in the other.
+    pub(super) fn again(&self, fits: &[&Fit], nothing: &Effects) -> (Vec<Echo>, Vec<Uneven>) {
         let (effects, from_s) = self.believing(fits);
-        self.fit.echoes(Belief { effects: &effects, from_s }, nothing)
+        let belief = Belief { effects: &effects, from_s };
+        let (echoes, mut unevens) = self.fit.again(belief, nothing);
+        let held = self.held.as_ref().map_or(Vec::new(), |held| held.again(belief, nothing).1);
+        for uneven in held {
+            match unevens.iter_mut().find(|other| other.is_like(&uneven)) {
+                Some(other) => other.join(&uneven),
+                None => unevens.push(uneven),
+            }
+        }
+        (echoes, unevens)
     }
 
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.

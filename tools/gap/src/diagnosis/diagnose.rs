@@ -91,10 +91,10 @@ impl Inquiry {
             None => (vec![&best.fit], &first, &best.fit),
         };
         let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
-        let echoes = court.echoes(&[last], nothing);
+        let (echoes, unevens) = court.again(&[last], nothing);
         let held = first.held(court, &[last]);
         let apart = first.apart(&believed, SHIFT_MAX);
-        Findings { unbent, alone, apart, single, pair, after, echoes, held, shifts }
+        Findings { unbent, alone, apart, single, pair, after, echoes, unevens, held, shifts }
     }
 
     /// Two causes at once, the best first, none where one is enough; and the docket beside the first.

@@ -11,6 +11,7 @@
 mod ahead;
 mod bumps;
 mod echo;
+mod halves;
 mod left;
 mod stack;
 mod watch;
@@ -28,6 +29,9 @@ use super::knob::Knob;
 use super::signals::Signals;
 pub(super) use ahead::Ahead;
 pub use echo::Echo;
+#[cfg(test)]
+pub(super) use halves::Half;
+pub use halves::Uneven;
 pub use left::Left;
 use left::{cost_of_squares, with_bumps};
 use stack::Group;
@@ -189,17 +193,23 @@ impl<'a> Evidence<'a> {
     }
 
     /// How much of what `belief` leaves on each signal is what it explains of what `nothing` leaves, moved
-    /// in time.
+    /// in time; and whether it is another share of that in one half of the samples than in the other.
     #[must_use]
-    pub fn echoes<'e>(&self, belief: impl Into<Belief<'e>>, nothing: &Effects) -> Vec<Echo> {
+    pub fn again<'e>(
+        &self,
+        belief: impl Into<Belief<'e>>,
+        nothing: &Effects,
+    ) -> (Vec<Echo>, Vec<Uneven>) {
         let (values, _, step) = self.answers(belief.into());
         let each = self.watches.par_iter().zip(values);
-        each.flat_map_iter(|(watch, believed)| {
+        let of = |(watch, believed): (&Watch, Vec<f64>)| {
             let unexplained = watch.values(self.runs, &self.machine, nothing.into());
             let left = watch.bent(believed.clone(), &step);
-            watch.echoes([&unexplained, &believed], &left)
-        })
-        .collect()
+            let both = [&unexplained[..], &believed];
+            (watch.echoes(both, &left), watch.unevens(self.runs, both, &left))
+        };
+        let (echoes, unevens): (Vec<Vec<Echo>>, Vec<Vec<Uneven>>) = each.map(of).unzip();
+        (echoes.concat(), unevens.concat())
     }
 
     /// Residuals of each watch under `belief`, what the cost has to know of them, and where the tolerances

@@ -14,7 +14,7 @@ mod places;
 mod untested;
 
 use super::candidates::Candidate;
-use super::evidence::{Echo, Left};
+use super::evidence::{Echo, Left, Uneven};
 use super::inquiry::{FieldRun, Inquiry};
 use super::knob::Knob;
 use super::scales::{Chances, Grounds, Scales};
@@ -45,6 +45,8 @@ pub struct Findings {
     pub after: Vec<Left>,
     /// How much of that is what they explain, moved in time.
     pub echoes: Vec<Echo>,
+    /// Whether it is another share of that in one half of all runs than in the other.
+    pub unevens: Vec<Uneven>,
     /// The runs that were held out.
     pub held: Held,
     /// Where the tolerances go beside the best cause or pair, each by how many of its own.
@@ -69,6 +71,12 @@ impl Findings {
     #[must_use]
     pub fn left_over(&self) -> f64 {
         self.objection().times
+    }
+
+    /// What [`Self::left_over`] is about, after `because`.
+    #[must_use]
+    pub fn left_over_why(&self) -> String {
+        self.objection().why
     }
 
     /// The same of the runs held out alone, and what speaks loudest there; nothing without any.

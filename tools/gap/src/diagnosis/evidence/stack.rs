@@ -32,6 +32,8 @@ pub(super) struct Stack {
     pub(super) group: Vec<usize>,
     /// Instant of each value in its run, s.
     pub(super) at_s: Vec<f64>,
+    /// Run of each value, by its place.
+    pub(super) run: Vec<usize>,
     /// All groups.
     pub(super) groups: Vec<Group>,
     /// What they were made with.
@@ -55,11 +57,12 @@ impl Stack {
             values: Vec::new(),
             group: Vec::new(),
             at_s: Vec::new(),
+            run: Vec::new(),
             groups: Vec::new(),
             base: base.clone(),
             mask: Vec::new(),
         };
-        for run in runs {
+        for (number, run) in runs.iter().enumerate() {
             for residual in generator.residuals_over(run, machine, course) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
@@ -71,6 +74,7 @@ impl Stack {
                         stack.values.push(value * weight.sqrt());
                         stack.group.push(group);
                         stack.at_s.push(at_s);
+                        stack.run.push(number);
                         stack.groups[group].samples += weight;
                     }
                 }

@@ -9,6 +9,7 @@ use xt28_sim::Effects;
 
 use super::bumps::Bumps;
 use super::echo::{Echo, Filter};
+use super::halves::{Half, Scene, Uneven};
 use super::stack::{Group, STEP_S, Stack};
 use crate::diagnosis::belief::{Base, Belief};
 use crate::diagnosis::generator::Generator;
@@ -211,6 +212,36 @@ impl Watch {
             Echo { generator, signal, nats, explained, samples }
         };
         groups.iter().enumerate().map(echo).collect()
+    }
+
+    /// Whether what each group leaves is another share of what is explained there in one half than in the
+    /// other; arguments and holes are those of [`Self::echoes`].
+    pub(super) fn unevens(
+        &self,
+        runs: &[Signals],
+        [values, believed]: [&[f64]; 2],
+        left: &[f64],
+    ) -> Vec<Uneven> {
+        let Stack { generator, ref group, ref at_s, ref run, ref groups, .. } = self.stack;
+        let scenes: Vec<Scene<'_>> = runs.iter().map(|run| Scene::new(generator, run)).collect();
+        let of = |(index, &Group { signal, .. }): (usize, &Group)| {
+            let own = |i: &usize| group[*i] == index && values[*i] != believed[*i];
+            let own: Vec<usize> = (0..values.len()).filter(own).collect();
+            let explained = |i: usize| values[i] - believed[i];
+            let squares: f64 = own.iter().map(|&i| explained(i).powi(2)).sum();
+            let mean = (squares / own.len().max(1) as f64).sqrt();
+            Half::ALL.map(|half| {
+                let mut uneven = Uneven::new(generator, signal, half);
+                for &i in &own {
+                    let by = explained(i);
+                    if let Some(is_in) = scenes[run[i]].side(half, at_s[i], by / mean) {
+                        uneven.add(is_in, by, left[i]);
+                    }
+                }
+                uneven
+            })
+        };
+        groups.iter().enumerate().flat_map(of).collect()
     }
 
     /// The base before `from_s` of every run, `values` after.

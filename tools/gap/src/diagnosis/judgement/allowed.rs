@@ -1,7 +1,7 @@
 //! What a right answer may leave of each signal: a floor, and a share of the gap that was there; and how
 //! much of that may be what it explains, moved in time.
 
-use super::super::evidence::{Echo, Left};
+use super::super::evidence::{Echo, Left, Uneven};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 
@@ -28,6 +28,9 @@ const ECHO: f64 = 8.0;
 /// The share of a gap that an echo may have on what a joint does within a second: models of one joint
 /// differ there by as much as most effects do.
 const JOINT_ECHO: f64 = 0.5;
+
+/// What chance and what correlates make of two sizes on a signal, nats.
+const UNEVEN: f64 = 8.0;
 
 /// Causes whose laws are known less well than others', and by how much.
 struct Vague {
@@ -76,7 +79,7 @@ pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64
     if after.samples < SAMPLES_MIN {
         return 0.0;
     }
-    let [floor, share] = floor_and_share(names, after);
+    let [floor, share] = floor_and_share(names, after.generator, after.signal);
     // A wheel that lifts jolts arms and attitude; nothing jolts the pressure that a law asks for, and
     // what is late shows there for moments alone.
     let jolts = after.signal != Signal::DrivePressure;
@@ -93,20 +96,19 @@ pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2]) -> f64 {
     if after.samples < SAMPLES_MIN || bunches && answers_commands(after) {
         return 0.0;
     }
-    let [floor, share] = floor_and_share(names, after);
+    let [floor, share] = floor_and_share(names, after.generator, after.signal);
     after.recurring / (RECURRING * floor + share * before.recurring)
 }
 
-/// What a right answer, which is one of `names` or both, may leave of the signal of `left`: floors, and a
-/// share of the gap.
-fn floor_and_share(names: &[&str], left: &Left) -> [f64; 2] {
-    let [floor, law] = match left.signal {
+/// What a right answer, which is one of `names` or both, may leave of `signal`: floors, and a share of the gap.
+fn floor_and_share(names: &[&str], generator: Generator, signal: Signal) -> [f64; 2] {
+    let [floor, law] = match signal {
         Signal::Roll => ROLL,
         Signal::RollSway | Signal::PitchSway => SWAY,
         Signal::TravelCourse => COURSE,
         _ => [1.0, LAW],
     };
-    [floor, vagueness(names, left.generator, left.signal).max(law)]
+    [floor, vagueness(names, generator, signal).max(law)]
 }
 
 /// How loud `echo` is beside the loudest that a right answer, which is one of `names` or both, has there.
@@ -114,6 +116,14 @@ pub(super) fn echoing(names: &[&str], echo: &Echo) -> f64 {
     let law = if echo.signal == Signal::JointFast { JOINT_ECHO } else { LAW };
     let share = vagueness(names, echo.generator, echo.signal).max(law);
     (echo.nats / (ECHO + share * share * echo.explained)).sqrt()
+}
+
+/// How far the sizes of `uneven` part beside the furthest that those of a right answer, which is one of `names` or
+/// both, part there. Two sizes of what has an `evidence` of next to nothing, nats, are as little.
+pub(super) fn parting(names: &[&str], uneven: &Uneven, evidence: f64) -> f64 {
+    let [_, share] = floor_and_share(names, uneven.generator, uneven.signal);
+    let share = if uneven.signal == Signal::JointFast { share.max(JOINT_ECHO) } else { share };
+    (uneven.nats().min(evidence) / (UNEVEN + share * share * uneven.explained())).sqrt()
 }
 
 /// The share of a gap by which the laws of `names` are vague in `signal`.

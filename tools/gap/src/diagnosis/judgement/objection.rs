@@ -1,12 +1,12 @@
-//! What speaks against the best cause or pair: a signal that it leaves, an echo of itself in that, or
-//! tolerances that would have to bend.
+//! What speaks against the best cause or pair: a signal that it leaves, an echo of itself in that, a size that
+//! is not one, or tolerances that would have to bend.
 
 use super::super::candidates::Candidate;
 use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 use super::super::knob::Knob;
-use super::allowed::{echoing, excess, is_vague, recurring};
+use super::allowed::{echoing, excess, is_vague, parting, recurring};
 use super::{Findings, Held};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
@@ -41,7 +41,8 @@ impl Findings {
     /// The strongest objection to the best cause or pair; about one, or less, where it is right.
     pub(super) fn objection(&self) -> Objection {
         let of_runs = self.signals_left().chain(self.recurring());
-        let of_signals = of_runs.chain(self.held_left()).chain(self.echoing());
+        let of_signals =
+            of_runs.chain(self.held_left()).chain(self.echoing()).chain(self.parting());
         let all = of_signals.chain(self.furthest(&self.shifts)).chain([self.bending()]);
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
@@ -116,6 +117,26 @@ impl Findings {
         })
     }
 
+    /// Sizes that are another in one half of what the machine did.
+    fn parting(&self) -> impl Iterator<Item = Objection> {
+        let names = self.names();
+        self.unevens.iter().map(move |uneven| {
+            let [out, within] = uneven.sizes();
+            Objection {
+                times: parting(&names, uneven, self.evidence()),
+                why: format!(
+                    "to explain the {} of {} it would have to be {within:.2} times as strong {} and {out:.2} \
+                     times elsewhere",
+                    uneven.signal.with_wheel(),
+                    uneven.generator,
+                    uneven.place()
+                ),
+                at: Some((uneven.generator, uneven.signal)),
+                is_held: false,
+            }
+        })
+    }
+
     /// All tolerances together.
     fn bending(&self) -> Objection {
         let taken = SHIFTS + SHIFTS_SHARE * self.evidence();
@@ -173,6 +194,7 @@ mod tests {
     use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
+    use super::super::super::evidence::{Half, Uneven};
     use super::*;
 
     fn echo(nats: f64) -> Echo {
@@ -230,6 +252,27 @@ mod tests {
             Findings { held, ..Findings::default() }.objection().times
         };
         assert!(of(12.0) < 1.0 && of(19.0) > 3.0);
+    }
+
+    #[test]
+    fn a_cause_that_has_two_sizes_is_not_believed() {
+        let of = |name: &str, large: f64, small: f64| {
+            let mut uneven =
+                Uneven::new(Generator::ArmStroke(Wheel::Ml), Signal::Stroke, Half::Large);
+            for _ in 0..100 {
+                uneven.add(true, 3.0, large * 3.0);
+                uneven.add(false, 1.0, small);
+            }
+            let single = vec![Candidate::made_up(name, Scope::All, 90.0)];
+            Findings { single, unevens: vec![uneven], ..Findings::default() }.objection()
+        };
+        let two = of("pressure-scale", 0.1, -0.5);
+        assert!(
+            two.times > 1.2 && two.why.contains("1.10 times as strong where it does much"),
+            "{two:?}"
+        );
+        assert!(of("pressure-scale", 0.1, 0.1).times < 0.5);
+        assert!(of("seal-stiction", 0.1, -0.5).times < 0.5);
     }
 
     #[test]

@@ -72,6 +72,13 @@ impl Arm {
         }
     }
 
+    /// The same with a spool that rests `share` of half its play, -1 to 1, off the command.
+    #[must_use]
+    pub fn resumed_off(&self, input: &ArmInput, share: f64, dt_s: f64) -> ArmState {
+        let valve = self.valve.held_off(input.command, share, dt_s);
+        ArmState { valve, ..self.resumed(input, dt_s) }
+    }
+
     /// Lets the oil carry `load_n` in this motion; valve and seals stay as they are.
     pub(crate) fn refill(&self, state: &mut ArmState, load_n: f64, motion: &CylinderMotion) {
         state.cylinder.rest_m = self.rest_m(load_n, motion);

@@ -30,6 +30,13 @@ pub struct ValveState {
     spool: f64,
 }
 
+impl ValveState {
+    /// Puts the spool where it is pulled, whatever play it has: there it is as a play sets in.
+    pub const fn release(&mut self) {
+        self.spool = self.pull.value();
+    }
+}
+
 impl Valve {
     /// A valve of this machine.
     #[must_use]
@@ -58,6 +65,14 @@ impl Valve {
         }
     }
 
+    /// The same of a valve whose spool rests elsewhere in its play: `share` of half of that, -1 to 1, off the command.
+    #[must_use]
+    pub fn held_off(&self, command: f64, share: f64, dt_s: f64) -> ValveState {
+        let half = 0.5 * self.hysteresis.width;
+        let held = self.held(command, dt_s);
+        ValveState { spool: command.clamp(-1.0, 1.0) + share.clamp(-1.0, 1.0) * half, ..held }
+    }
+
     /// Where the spool is after `dt_s` s more under `command`, both -1 (retract) to 1 (extend).
     pub fn step(&self, state: &mut ValveState, command: f64, dt_s: f64) -> f64 {
         let arrived = state.commands.step(command.clamp(-1.0, 1.0), self.delay.delay_s, dt_s);
@@ -81,6 +96,18 @@ impl Valve {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_spool_that_rests_off_its_command_stays_until_the_play_is_crossed() {
+        let mut effects = ArmEffects::default();
+        effects.hysteresis.width = 0.04;
+        let valve = Valve::new(&Machine::xt28(), &effects);
+        let mut state = valve.held_off(0.1, -0.5, 0.005);
+        let at: Vec<f64> =
+            [0.1, 0.105, 0.15].map(|command| valve.step(&mut state, command, 0.005)).to_vec();
+        assert!((at[0] - 0.09).abs() < 1e-12 && at[1] == at[0], "{at:?}");
+        assert!((at[2] - 0.13).abs() < 1e-12, "{at:?}");
+    }
 
     #[test]
     fn the_nominal_valve_is_a_wire_with_a_speed() {

@@ -1,24 +1,21 @@
 //! Hypotheses ranked on two sets of runs: fitted on one, held against the other.
 
+mod beginning;
+
 use rayon::prelude::*;
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
-use xt28_sim::effects::{Block, Effect, Parameter};
+use xt28_sim::effects::Effect;
 
 use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left, Uneven};
-use super::hypothesis::{Fit, Hypothesis};
+use super::hypothesis::Fit;
 use super::knob::Knob;
 use super::overlap::Paid;
 use super::search::search;
 use super::signals::Signals;
+use beginning::{ASKED, anew, asked, is_there};
 
-/// Instants of every run at which an effect may set in, s.
-const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
-/// How many of the leading hypotheses are asked when they set in.
-const ASKED: usize = 6;
-/// How many are asked beside them that set in late, whatever they foretell.
-const ASKED_BESIDE: usize = 3;
 /// Share of the best one's score above which another is sought to the floor of its valley.
 const NEAR: f64 = 0.5;
 /// What values may lose on the runs fitted that these are said to leave open, nats, and as a share of
@@ -26,18 +23,6 @@ const NEAR: f64 = 0.5;
 const OPEN: [f64; 2] = [4.0, 0.03];
 /// Evidence of the runs fitted from which that is worth a look, nats.
 const SUITED_MIN: f64 = 12.0;
-/// What a beginning must gain beyond the freedom to choose it, nats.
-const BEGINNING_MIN: f64 = 6.0;
-/// How many standard deviations some parameter of an effect that sets in late is from where the effect
-/// is not there: an arm's oil begins anew with another law, and that alone may explain a jump.
-const BEGUN_SIGMA: f64 = 2.0;
-/// Tolerances that are next to nothing, and yet more than rounding.
-const BARELY: f64 = 2.0e-3;
-/// What it must gain with the values of an effect that was always there, nats; else it is not asked.
-const BEGINNING_HINT: f64 = 2.0;
-/// The widest and the finest step in which a beginning is looked for, s.
-const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.1];
-
 /// A fitted hypothesis with what it is worth on both sets of runs.
 #[derive(Clone, Debug)]
 pub struct Candidate {
@@ -107,7 +92,8 @@ impl Candidate {
     pub(super) fn made_up(name: &str, scope: xt28_sim::effects::Scope, score: f64) -> Self {
         let effect = xt28_sim::effects::find(name).unwrap();
         let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
-        let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
+        let (hypothesis, sigma) =
+            (super::hypothesis::Hypothesis { effect, scope }, vec![0.0; values.len()]);
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
         Self { fit, held_gain: None, own_share: 1.0 }
     }
@@ -141,21 +127,6 @@ impl<'a> Docket<'a> {
         let elsewhere = all.first().map_or(Vec::new(), |best| self.elsewhere(best));
         merge(&mut all, elsewhere);
         all
-    }
-
-    /// The effect of one that sets in late on all other wheels from there on: only one scope's beginning
-    /// may have been close to one that was looked at.
-    fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
-        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
-        if from_s == 0.0 {
-            return Vec::new();
-        }
-        let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
-        let others = others.filter(|other| *other != hypothesis).map(|other| {
-            let found = self.weighed(other.refit(&self.fit, from_s, values));
-            self.set_in(&found).unwrap_or(found)
-        });
-        others.filter(|other| other.score() > best.score()).collect()
     }
 
     /// What each signal leaves with tolerances where they are believed to be.
@@ -252,78 +223,6 @@ impl<'a> Docket<'a> {
         fit.log_evidence -= anew(&self.fit, &fit);
         Candidate { fit, held_gain, own_share: 1.0 }
     }
-
-    /// The same candidate setting in late, where that is worth it; one that does, at a better instant.
-    fn set_in(&self, found: &Candidate) -> Option<Candidate> {
-        let Fit { hypothesis, from_s, .. } = found.fit;
-        let is_late = from_s > 0.0;
-        let best = |instants: &[f64], values: &[f64]| {
-            let gains = hypothesis.onset_gains(&self.fit, instants, values);
-            let each = gains.into_iter().zip(instants.iter().copied());
-            each.max_by(|a, b| a.0.total_cmp(&b.0))
-        };
-        let whole = hypothesis.gain(&self.fit, from_s, &found.fit.values);
-        let (gain, at_s) = best(&SETS_IN_S, &found.fit.values)?;
-        if !is_late && gain < whole + BEGINNING_HINT {
-            return None;
-        }
-        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at_s, &found.fit.values)));
-        let least = if is_late { 0.0 } else { BEGINNING_MIN };
-        (late.score() > found.score() + least).then_some(late)
-    }
-
-    /// The same with its beginning where it explains most, its values anew after every step there: a leak
-    /// that begins later and one that is smaller look alike a second beside it.
-    fn begun(&self, mut fit: Fit) -> Fit {
-        let mut step_s = BEGINNING_STEPS_S[0];
-        while step_s >= BEGINNING_STEPS_S[1] {
-            let hypothesis = fit.hypothesis;
-            let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);
-            let here = gain(fit.from_s).0;
-            let near = [fit.from_s - step_s, fit.from_s + step_s];
-            let [before, after] = near.map(|at_s| gain(at_s.max(0.0)));
-            let (there, at_s) = if before.0 > after.0 { before } else { after };
-            let moved = (there > here).then(|| hypothesis.refit(&self.fit, at_s, &fit.values));
-            match moved.filter(|moved| moved.log_evidence > fit.log_evidence) {
-                Some(moved) => fit = moved,
-                None => step_s *= 0.5,
-            }
-        }
-        fit
-    }
-}
-
-/// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on
-/// whatever it foretells. It may be there from another: a band that opens two seconds early harms where
-/// an arm moves just then.
-fn asked(all: &[Candidate]) -> Vec<&Candidate> {
-    let (leading, others) = all.split_at(all.len().min(ASKED));
-    let mut late: Vec<&Candidate> = others.iter().filter(|other| other.fit.from_s > 0.0).collect();
-    late.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
-    leading.iter().chain(late.into_iter().take(ASKED_BESIDE)).collect()
-}
-
-/// What it explains that an arm's oil begins anew where an effect of it sets in late, nats: what next to
-/// nothing of the effect gains there. A jump of a pressure is gone with it, whatever the effect.
-fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
-    if fit.from_s == 0.0 || fit.hypothesis.effect.block != Block::Arms {
-        return 0.0;
-    }
-    let barely = |p: &Parameter| {
-        let by = BARELY * p.tolerance;
-        if p.neutral + by <= p.range[1] { p.neutral + by } else { p.neutral - by }
-    };
-    let values: Vec<f64> = fit.hypothesis.effect.parameters.iter().map(barely).collect();
-    fit.hypothesis.gain(evidence, fit.from_s, &values).max(0.0)
-}
-
-/// Whether an effect that sets in late is there at all from then on.
-fn is_there(fit: &Fit) -> bool {
-    let each = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
-    let is_off = |(p, (value, sigma)): (&Parameter, (&f64, &f64))| {
-        (value - p.neutral).abs() > BEGUN_SIGMA * sigma
-    };
-    fit.from_s == 0.0 || each.into_iter().any(is_off)
 }
 
 /// Puts each of `found` in the place of what was known of its hypothesis, and ranks anew.
@@ -347,35 +246,6 @@ mod tests {
     use xt28_sim::effects::Scope;
 
     use super::*;
-
-    #[test]
-    fn an_effect_that_sets_in_late_has_to_do_something() {
-        let is_there_at = |share: f64, sigma: f64, from_s: f64| {
-            let mut fit = Candidate::made_up("accumulator-gas", Scope::All, 400.0).fit;
-            for (k, p) in fit.hypothesis.effect.parameters.iter().enumerate() {
-                // Rounded, and known to be anything.
-                (fit.values[k], fit.sigma[k]) = (p.neutral * (1.0 + 1e-8), p.tolerance);
-            }
-            (fit.values[0], fit.sigma[0], fit.from_s) = (share, sigma, from_s);
-            is_there(&fit)
-        };
-        assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
-        assert!(is_there_at(0.5, 0.05, 14.0) && is_there_at(0.0, 0.05, 0.0));
-    }
-
-    #[test]
-    fn what_explains_much_from_an_instant_on_is_asked_though_it_foretells_nothing() {
-        let mut all: Vec<Candidate> =
-            (0..12).map(|_| Candidate::made_up("valve-gain", Scope::All, 5.0)).collect();
-        for (k, (from_s, nats)) in [(12.0, 300.0), (0.0, 900.0)].into_iter().enumerate() {
-            let beside = &mut all[10 + k];
-            (beside.fit.from_s, beside.fit.log_evidence) = (from_s, nats);
-            beside.held_gain = Some(-200.0);
-        }
-        let asked = asked(&all);
-        assert_eq!(asked.len(), ASKED + 1);
-        assert_eq!(asked[ASKED].fit.log_evidence, 300.0);
-    }
 
     #[test]
     fn what_grows_by_steps_is_no_pair() {

@@ -16,6 +16,7 @@ mod press;
 mod pump;
 mod rolling;
 mod scrub;
+mod spool;
 mod stance;
 #[cfg(test)]
 mod still;

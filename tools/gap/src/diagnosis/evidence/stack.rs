@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use xt28_machine::Machine;
+use xt28_sim::Effects;
 
 use crate::diagnosis::belief::{Base, Belief, Course};
 use crate::diagnosis::floor::Signal;
@@ -107,6 +108,15 @@ impl Stack {
             }
         }
         values
+    }
+
+    /// Whether `effects` give the valve that it watches another play.
+    pub(super) fn plays_otherwise(&self, effects: &Effects) -> bool {
+        let play = |effects: &Effects, wheel| effects.arms[wheel].hysteresis;
+        match self.generator {
+            Generator::ArmStroke(w) => play(effects, w) != play(&self.base.effects, w),
+            _ => false,
+        }
     }
 
     /// Sum of squares of `values` in each group.

@@ -158,7 +158,8 @@ impl Watch {
     }
 
     /// The same for effects that set in at each of `instants` of every run, s; as if they had always been
-    /// there, so that one run of the generator does for all.
+    /// there, so that one run of the generator does for all. But for a valve's play: the spool would not be where it
+    /// is, for as long as no command crosses the play.
     pub(super) fn onsets(
         &self,
         runs: &[Signals],
@@ -166,6 +167,10 @@ impl Watch {
         effects: &Effects,
         instants: &[f64],
     ) -> Vec<Sums> {
+        if self.stack.plays_otherwise(effects) {
+            let belief = |&from_s| Belief { effects, from_s };
+            return instants.iter().map(|at| self.again(runs, machine, belief(at))).collect();
+        }
         let values = self.stack.again(runs, machine, effects.into());
         instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
     }

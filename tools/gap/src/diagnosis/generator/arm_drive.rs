@@ -38,6 +38,8 @@ pub(super) struct ArmDrive<'a> {
     before: Option<(usize, Sensing)>,
     /// Samples at which the arm becomes another, so that its oil begins anew.
     anew: [Option<usize>; 2],
+    /// Samples at which the play of its valve becomes another, so that its spool is still where it was pulled.
+    plays: [Option<usize>; 2],
     loads: Loads,
     area_bore_m2: f64,
     force_max_n: f64,
@@ -60,6 +62,7 @@ impl<'a> ArmDrive<'a> {
             sensing: Sensing::new(machine.arms.area_bore_m2, effects.wheels[wheel]),
             before: None,
             anew: [None; 2],
+            plays: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
             area_bore_m2: machine.arms.area_bore_m2,
             force_max_n: machine.arms.force_max_n,
@@ -83,6 +86,14 @@ impl<'a> ArmDrive<'a> {
             becomes(sample(course.since_s), [&sound, course.before]),
             becomes(from, [course.before, course.effects]),
         ];
+        let plays = |at: usize, [was, is]: [&Effects; 2]| {
+            let [was, is] = [was, is].map(|effects| effects.arms[self.wheel].hysteresis);
+            (at > 0 && was != is).then_some(at)
+        };
+        self.plays = [
+            plays(sample(course.since_s), [&sound, course.before]),
+            plays(from, [course.before, course.effects]),
+        ];
         self
     }
 
@@ -94,21 +105,37 @@ impl<'a> ArmDrive<'a> {
         }
     }
 
+    /// Whether the play of its valve sets in within the run: where its spool then is, is known.
+    pub(super) fn plays_late(&self) -> bool {
+        self.plays.iter().any(Option::is_some)
+    }
+
+    /// Moves the spool with sample `i`; the speed that it asks for, extending > 0, m/s.
+    fn open(&self, state: &mut ArmState, i: usize, input: &ArmInput) -> f64 {
+        if self.plays.contains(&Some(i)) {
+            state.valve.release();
+        }
+        self.arm.open(state, input, DT_S)
+    }
+
     /// Speed that the valve asks of the oil, extending > 0, m/s.
-    pub(super) fn speeds_asked_m_s(&self) -> Samples {
-        let mut state = self.started();
-        (0..self.signals.len).map(|i| self.arm.open(&mut state, &self.input(i), DT_S)).collect()
+    ///
+    /// The spool begins as near to where it is shut as the first command lets it, or `off` that command by a
+    /// share of half its play, -1 to 1.
+    pub(super) fn speeds_asked_m_s(&self, off: Option<f64>) -> Samples {
+        let mut state = self.started(off);
+        (0..self.signals.len).map(|i| self.open(&mut state, i, &self.input(i))).collect()
     }
 
     /// Stroke predicted less the stroke measured, m, without the friction of the seals; and how far the
     /// sensor's reading goes for a newton, m/N. `share` is what the pump gives of what is asked, by sample; all where
-    /// there are none.
+    /// there are none; `off` is where the spool begins, as in [`Self::speeds_asked_m_s`].
     ///
     /// A force counts as the distance that this very arm gives way for it: were it the nominal arm's,
     /// a softer one would seem to be measured better.
-    pub(super) fn stroke_errors_m(&self, share: &[f64]) -> (Samples, Samples) {
+    pub(super) fn stroke_errors_m(&self, share: &[f64], off: Option<f64>) -> (Samples, Samples) {
         let is_new = &self.signals.load_is_new[self.wheel];
-        let mut state = self.started();
+        let mut state = self.started(off);
         let mut seen_n = self.loads.reading_n[0];
         let (mut error_m, mut m_n, mut began) = (0.0, 0.0, 0);
         let step = |i: usize| {
@@ -132,7 +159,7 @@ impl<'a> ArmDrive<'a> {
             // A single reading is poor to begin with on an arm that swings: it is the mean of those there are.
             let since_s = (i - began + 1) as f64 * DT_S;
             state.cylinder.rest_m -= parted_m * (DT_S / since_s.min(FORGET_S));
-            let asked_m_s = self.arm.open(&mut state, &input, DT_S);
+            let asked_m_s = self.open(&mut state, i, &input);
             let given_m_s = share.get(i).map_or(asked_m_s, |share| share * asked_m_s);
             if input.load_n.abs() < SHUT * self.force_max_n {
                 self.arm.fill_shut(&mut state, &input, given_m_s, DT_S);
@@ -156,8 +183,12 @@ impl<'a> ArmDrive<'a> {
         (to_m - from_m) / by_n
     }
 
-    fn started(&self) -> ArmState {
-        self.arm.resumed(&self.input(0), DT_S)
+    fn started(&self, off: Option<f64>) -> ArmState {
+        let input = self.input(0);
+        off.map_or_else(
+            || self.arm.resumed(&input, DT_S),
+            |share| self.arm.resumed_off(&input, share, DT_S),
+        )
     }
 
     fn input(&self, i: usize) -> ArmInput {
@@ -245,7 +276,7 @@ mod tests {
         let (machine, effects) = (Machine::xt28(), Effects::default());
         let swings = swinging();
         let drive = ArmDrive::new(&swings, &machine, &effects, Wheel::Fl);
-        let (errors_m, _) = drive.stroke_errors_m(&[]);
+        let (errors_m, _) = drive.stroke_errors_m(&[], None);
         let largest_m = errors_m[100..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
         assert!(largest_m < 3.0e-4, "{largest_m}");
     }

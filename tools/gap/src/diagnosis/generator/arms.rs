@@ -5,7 +5,7 @@ use xt28_sim::effects::SealStiction;
 
 use super::arm_drive::ArmDrive;
 use super::loads::KEPT;
-use super::pump;
+use super::{pump, spool};
 use crate::diagnosis::belief::Course;
 use crate::diagnosis::signals::{Samples, Signals};
 
@@ -29,7 +29,8 @@ pub(super) fn stroke_error_m(
     let drive = ArmDrive::new(signals, machine, effects, wheel).over(course);
     // No log says what else the pump has to give. The arm does.
     let shares = pump::flow_shares(signals, machine, effects);
-    let each = shares.iter().map(|share| drive.stroke_errors_m(share));
+    let hysteresis = effects.arms[wheel].hysteresis;
+    let each = shares.iter().map(|share| spool::stroke_errors_m(&drive, hysteresis, share));
     let least = each.min_by(|(a, _), (b, _)| square(a).total_cmp(&square(b)));
     let (errors, softness) = least.unwrap_or_default();
     let stiction = &effects.arms[wheel].stiction;
@@ -44,7 +45,7 @@ pub(super) fn stroke_error_m(
 }
 
 /// Sum of the squares of errors, where there are any.
-fn square(errors: &Samples) -> f64 {
+pub(super) fn square(errors: &[f64]) -> f64 {
     errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum()
 }
 
@@ -81,7 +82,7 @@ mod tests {
         s.steer_opening[0][500..900].fill(0.8);
         let share = pump::flow_shares(&s, &machine, effects).swap_remove(law);
         for w in Wheel::ALL {
-            let asked = ArmDrive::new(&s, &machine, effects, w).speeds_asked_m_s();
+            let asked = ArmDrive::new(&s, &machine, effects, w).speeds_asked_m_s(None);
             let mut stroke_m = 0.25;
             for i in 1..s.len {
                 s.stroke_m[w][i - 1] = stroke_m;
@@ -105,7 +106,7 @@ mod tests {
             assert!(error_m < 1.0e-3, "law {law}: {error_m} m");
             let shares = pump::flow_shares(&s, &machine, &effects);
             let drive = ArmDrive::new(&s, &machine, &effects, Wheel::Fl);
-            let other_m = largest_m(&drive.stroke_errors_m(&shares[3 - law]).0);
+            let other_m = largest_m(&drive.stroke_errors_m(&shares[3 - law], None).0);
             assert!(other_m > 5.0 * error_m, "law {law}: {other_m} m");
         }
     }

@@ -29,7 +29,7 @@ pub(super) fn flow_shares(signals: &Signals, machine: &Machine, effects: &Effect
         return vec![Samples::new()];
     }
     let flow = FlowSharing::new(machine, effects.pump_flow);
-    let asked = |w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s();
+    let asked = |w| ArmDrive::new(signals, machine, effects, w).speeds_asked_m_s(None);
     let arms_m_s = PerWheel::from_fn(asked);
     let joints_m3_s = joints_m3_s(signals, machine, effects, &flow);
     let under = |law: &Law| {

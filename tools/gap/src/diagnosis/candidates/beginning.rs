@@ -1,0 +1,151 @@
+//! When an effect sets in: not before some instant of every run.
+
+use rayon::prelude::*;
+use xt28_sim::effects::{Block, Parameter};
+
+use super::super::evidence::Evidence;
+use super::super::hypothesis::{Fit, Hypothesis};
+use super::{Candidate, Docket};
+
+/// Instants of every run at which an effect may set in, s.
+const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
+/// How many of the leading hypotheses are asked when they set in.
+pub(super) const ASKED: usize = 6;
+/// How many are asked beside them that set in late, whatever they foretell.
+const ASKED_BESIDE: usize = 3;
+/// What a beginning must gain beyond the freedom to choose it, nats.
+const BEGINNING_MIN: f64 = 6.0;
+/// How many standard deviations some parameter of an effect that sets in late is from where the effect
+/// is not there: an arm's oil begins anew with another law, and that alone may explain a jump.
+const BEGUN_SIGMA: f64 = 2.0;
+/// Tolerances that are next to nothing, and yet more than rounding.
+const BARELY: f64 = 2.0e-3;
+/// What it must gain with the values of an effect that was always there, nats; else it is not asked.
+const BEGINNING_HINT: f64 = 2.0;
+/// The widest and the finest step in which a beginning is looked for, s.
+const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.1];
+
+impl Docket<'_> {
+    /// The effect of one that sets in late on all other wheels from there on: only one scope's beginning
+    /// may have been close to one that was looked at.
+    pub(super) fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
+        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
+        if from_s == 0.0 {
+            return Vec::new();
+        }
+        let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
+        let others = others.filter(|other| *other != hypothesis).map(|other| {
+            let found = self.weighed(other.refit(&self.fit, from_s, values));
+            self.set_in(&found).unwrap_or(found)
+        });
+        others.filter(|other| other.score() > best.score()).collect()
+    }
+
+    /// The same candidate setting in late, where that is worth it; one that does, at a better instant.
+    pub(super) fn set_in(&self, found: &Candidate) -> Option<Candidate> {
+        let Fit { hypothesis, from_s, .. } = found.fit;
+        let is_late = from_s > 0.0;
+        let best = |instants: &[f64], values: &[f64]| {
+            let gains = hypothesis.onset_gains(&self.fit, instants, values);
+            let each = gains.into_iter().zip(instants.iter().copied());
+            each.max_by(|a, b| a.0.total_cmp(&b.0))
+        };
+        let whole = hypothesis.gain(&self.fit, from_s, &found.fit.values);
+        let (gain, at_s) = best(&SETS_IN_S, &found.fit.values)?;
+        if !is_late && gain < whole + BEGINNING_HINT {
+            return None;
+        }
+        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at_s, &found.fit.values)));
+        let least = if is_late { 0.0 } else { BEGINNING_MIN };
+        (late.score() > found.score() + least).then_some(late)
+    }
+
+    /// The same with its beginning where it explains most, its values anew after every step there: a leak
+    /// that begins later and one that is smaller look alike a second beside it.
+    fn begun(&self, mut fit: Fit) -> Fit {
+        let mut step_s = BEGINNING_STEPS_S[0];
+        while step_s >= BEGINNING_STEPS_S[1] {
+            let hypothesis = fit.hypothesis;
+            let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);
+            let here = gain(fit.from_s).0;
+            let near = [fit.from_s - step_s, fit.from_s + step_s];
+            let [before, after] = near.map(|at_s| gain(at_s.max(0.0)));
+            let (there, at_s) = if before.0 > after.0 { before } else { after };
+            let moved = (there > here).then(|| hypothesis.refit(&self.fit, at_s, &fit.values));
+            match moved.filter(|moved| moved.log_evidence > fit.log_evidence) {
+                Some(moved) => fit = moved,
+                None => step_s *= 0.5,
+            }
+        }
+        fit
+    }
+}
+
+/// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on
+/// whatever it foretells. It may be there from another: a band that opens two seconds early harms where
+/// an arm moves just then.
+pub(super) fn asked(all: &[Candidate]) -> Vec<&Candidate> {
+    let (leading, others) = all.split_at(all.len().min(ASKED));
+    let mut late: Vec<&Candidate> = others.iter().filter(|other| other.fit.from_s > 0.0).collect();
+    late.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
+    leading.iter().chain(late.into_iter().take(ASKED_BESIDE)).collect()
+}
+
+/// What it explains that an arm's oil begins anew where an effect of it sets in late, nats: what next to
+/// nothing of the effect gains there. A jump of a pressure is gone with it, whatever the effect.
+pub(super) fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
+    if fit.from_s == 0.0 || fit.hypothesis.effect.block != Block::Arms {
+        return 0.0;
+    }
+    let barely = |p: &Parameter| {
+        let by = BARELY * p.tolerance;
+        if p.neutral + by <= p.range[1] { p.neutral + by } else { p.neutral - by }
+    };
+    let values: Vec<f64> = fit.hypothesis.effect.parameters.iter().map(barely).collect();
+    fit.hypothesis.gain(evidence, fit.from_s, &values).max(0.0)
+}
+
+/// Whether an effect that sets in late is there at all from then on.
+pub(super) fn is_there(fit: &Fit) -> bool {
+    let each = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
+    let is_off = |(p, (value, sigma)): (&Parameter, (&f64, &f64))| {
+        (value - p.neutral).abs() > BEGUN_SIGMA * sigma
+    };
+    fit.from_s == 0.0 || each.into_iter().any(is_off)
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::effects::Scope;
+
+    use super::*;
+
+    #[test]
+    fn an_effect_that_sets_in_late_has_to_do_something() {
+        let is_there_at = |share: f64, sigma: f64, from_s: f64| {
+            let mut fit = Candidate::made_up("accumulator-gas", Scope::All, 400.0).fit;
+            for (k, p) in fit.hypothesis.effect.parameters.iter().enumerate() {
+                // Rounded, and known to be anything.
+                (fit.values[k], fit.sigma[k]) = (p.neutral * (1.0 + 1e-8), p.tolerance);
+            }
+            (fit.values[0], fit.sigma[0], fit.from_s) = (share, sigma, from_s);
+            is_there(&fit)
+        };
+        assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
+        assert!(is_there_at(0.5, 0.05, 14.0) && is_there_at(0.0, 0.05, 0.0));
+    }
+
+    #[test]
+    fn what_explains_much_from_an_instant_on_is_asked_though_it_foretells_nothing() {
+        let mut all: Vec<Candidate> =
+            (0..12).map(|_| Candidate::made_up("valve-gain", Scope::All, 5.0)).collect();
+        for (k, (from_s, nats)) in [(12.0, 300.0), (0.0, 900.0)].into_iter().enumerate() {
+            let beside = &mut all[10 + k];
+            (beside.fit.from_s, beside.fit.log_evidence) = (from_s, nats);
+            beside.held_gain = Some(-200.0);
+        }
+        let asked = asked(&all);
+        assert_eq!(asked.len(), ASKED + 1);
+        assert_eq!(asked[ASKED].fit.log_evidence, 300.0);
+    }
+}

@@ -22,8 +22,9 @@ const BEGUN_SIGMA: f64 = 2.0;
 const BARELY: f64 = 2.0e-3;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
-/// The widest and the finest step in which a beginning is looked for, s.
-const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.1];
+/// The widest and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
+/// for a tenth of a second beside it, in every run.
+const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.03];
 
 impl Docket<'_> {
     /// The effect of one that sets in late on all other wheels from there on: only one scope's beginning

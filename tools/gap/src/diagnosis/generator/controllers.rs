@@ -16,7 +16,9 @@ const HALVINGS: usize = 9;
 ///
 /// Which of two neighbouring samples the ECU saw is not known: where what it would ask jumps between
 /// them, anything in between is right. Nor is it known whether a current is rounded to the wire's steps or
-/// cut off: it is taken for what leaves less. `NaN` where the machine is about to start or to stop.
+/// cut off: it is taken for what leaves less of the front joint, for both come from one ECU, and a rear joint that
+/// follows otherwise than is believed may look as if its currents were of the other kind. `NaN` where the machine is
+/// about to start or to stop.
 #[must_use]
 pub(super) fn steer_opening_error(
     signals: &Signals,
@@ -24,14 +26,27 @@ pub(super) fn steer_opening_error(
     effects: &Effects,
     joint: usize,
 ) -> Samples {
-    let asked = steer_opening_asked(signals, machine, effects, joint);
-    let logged = &signals.steer_opening[joint];
-    let cut: Samples = logged.iter().map(|opening| middle_of_cut(*opening, STEER_STEP)).collect();
-    let [rounded, cut] = [logged, &cut].map(|meant| error_of(signals, machine, [&asked, meant]));
+    let [rounded, cut] = errors_of(signals, machine, effects, 0);
     let squares = |errors: &Samples| -> f64 {
         errors.iter().filter(|error| !error.is_nan()).map(|error| error * error).sum()
     };
-    if squares(&cut) < squares(&rounded) { cut } else { rounded }
+    let is_cut = squares(&cut) < squares(&rounded);
+    let [rounded, cut] =
+        if joint == 0 { [rounded, cut] } else { errors_of(signals, machine, effects, joint) };
+    if is_cut { cut } else { rounded }
+}
+
+/// What is asked of a joint less what its currents mean, where they are rounded and where they are cut off.
+fn errors_of(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    joint: usize,
+) -> [Samples; 2] {
+    let asked = steer_opening_asked(signals, machine, effects, joint);
+    let logged = &signals.steer_opening[joint];
+    let cut: Samples = logged.iter().map(|opening| middle_of_cut(*opening, STEER_STEP)).collect();
+    [logged, &cut].map(|meant| error_of(signals, machine, [&asked, meant]))
 }
 
 /// What is asked less what is meant by the currents logged, sample by sample.
@@ -137,7 +152,52 @@ impl<'a> Pi<'a> {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
+
+    use super::super::still::still;
     use super::*;
+
+    /// A machine that turns, its rear joint told to follow 0.5 s behind, its currents rounded to the wire's steps.
+    fn turning(machine: &Machine) -> Signals {
+        let mut s = still(20);
+        for w in Wheel::ALL {
+            s.wheel_speed_rad_s[w].fill(2.0);
+        }
+        s.is_fresh_drive_current.fill(true);
+        for i in 0..s.len {
+            let t = i as f64 * DT_S;
+            // Steadily to one side and back, so that what is late is late by the same all the while.
+            let front_rad = |t: f64| 0.45 - 0.09 * (t - 10.0).abs();
+            s.joint_rad[0][i] = front_rad(t);
+            s.joint_rad[1][i] = 0.5 * front_rad(t - 1.5);
+            s.target_joint_rad[i] = front_rad(t + 1.0);
+        }
+        for joint in [0, 1] {
+            let asked = steer_opening_asked(&s, machine, &late(0.5), joint);
+            s.steer_opening[joint] =
+                asked.iter().map(|asked| (asked / STEER_STEP).round() * STEER_STEP).collect();
+        }
+        s
+    }
+
+    fn late(time_constant_s: f64) -> Effects {
+        let mut effects = Effects::default();
+        effects.steering.rear_follower.time_constant_s = time_constant_s;
+        effects
+    }
+
+    /// Currents taken for cut off make up for a follower that is too quick.
+    #[test]
+    fn currents_of_the_rear_joint_are_of_the_kind_of_the_front_ones() {
+        let machine = Machine::xt28();
+        let s = turning(&machine);
+        let squares = |time_constant_s: f64| -> f64 {
+            let errors = steer_opening_error(&s, &machine, &late(time_constant_s), 1);
+            errors.iter().filter(|error| !error.is_nan()).map(|error| error * error).sum()
+        };
+        let squares = [0.38, 0.44, 0.5].map(squares);
+        assert!(squares[0] > 10.0 * squares[2] && squares[1] > 3.0 * squares[2], "{squares:?}");
+    }
 
     fn pi(logged: &[f64]) -> Pi<'_> {
         let steering = (0..600).map(|i| Some(9.0 * (f64::from(i) * 0.02).sin()));

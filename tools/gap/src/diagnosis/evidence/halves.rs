@@ -58,7 +58,7 @@ pub struct Uneven {
     pub half: Half,
     /// Squares of what is explained, floors, outside the half and in it.
     explained: [f64; 2],
-    /// The same times what is left.
+    /// What is explained times what is left, in both.
     misfits: [f64; 2],
 }
 

@@ -5,6 +5,7 @@ use xt28_sim::effects::SealStiction;
 
 use super::arm_drive::ArmDrive;
 use super::loads::KEPT;
+use super::spool::square;
 use super::{pump, spool};
 use crate::diagnosis::belief::Course;
 use crate::diagnosis::signals::{Samples, Signals};
@@ -42,11 +43,6 @@ pub(super) fn stroke_error_m(
     let with: Samples = each.map(|(error_m, (m_n, n))| error_m - m_n * n).collect();
     // Where the pressures are taken, the seals are among the load or they are not; nobody knows.
     if square(&with) < square(&errors) { with } else { errors }
-}
-
-/// Sum of the squares of errors, where there are any.
-pub(super) fn square(errors: &[f64]) -> f64 {
-    errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum()
 }
 
 /// Friction of seals that slide as measured, as far as a load that has it in shows it.

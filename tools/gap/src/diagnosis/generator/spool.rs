@@ -6,7 +6,6 @@
 use xt28_sim::effects::ValveHysteresis;
 
 use super::arm_drive::ArmDrive;
-use super::arms::square;
 use crate::diagnosis::signals::{DT_S, Samples};
 
 /// A play below this is within what makers state, share of full opening: it is not worth a look.
@@ -63,6 +62,11 @@ fn lies_where_it_began(drive: &ArmDrive<'_>) -> bool {
     let [one, other] = [-1.0, 1.0].map(|place| drive.speeds_asked_m_s(Some(place)));
     let apart = one.iter().zip(&other).take_while(|(one, other)| one != other);
     apart.count() as f64 * DT_S > LIES_S
+}
+
+/// Sum of the squares of errors, where there are any.
+pub(super) fn square(errors: &[f64]) -> f64 {
+    errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum()
 }
 
 /// The place between two at which errors are least, if it is at neither: what comes in past the spool adds up alike

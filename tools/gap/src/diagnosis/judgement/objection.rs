@@ -5,6 +5,7 @@ use super::super::candidates::Candidate;
 use super::super::evidence::{Echo, Left};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
+use super::super::hypothesis::Fit;
 use super::super::knob::Knob;
 use super::allowed::{echoing, excess, is_vague, parting, recurring};
 use super::{Findings, Held};
@@ -21,6 +22,11 @@ const SHIFT: f64 = 4.4;
 /// How much more a right answer may leave of a signal of the runs held out: they are few, and no scale was
 /// settled on them.
 const HELD: f64 = 1.5;
+/// How strongly it speaks against a cause that its one number is where its law ends: it would go on. Of right answers
+/// none is there.
+const AT_ITS_END: f64 = 2.0;
+/// Share of a range within which a number is at the end of it.
+const END: f64 = 1e-3;
 /// Share of a gap's square beyond which the causes believed explain none of it there.
 const STRANGE: f64 = 0.64;
 
@@ -43,7 +49,10 @@ impl Findings {
         let of_runs = self.signals_left().chain(self.recurring());
         let of_signals =
             of_runs.chain(self.held_left()).chain(self.echoing()).chain(self.parting());
-        let all = of_signals.chain(self.furthest(&self.shifts)).chain([self.bending()]);
+        let all = of_signals
+            .chain(self.furthest(&self.shifts))
+            .chain([self.bending()])
+            .chain(self.at_its_end());
         all.max_by(|a, b| a.times.total_cmp(&b.times)).expect("tolerances are always there")
     }
 
@@ -134,6 +143,23 @@ impl Findings {
                 at: Some((uneven.generator, uneven.signal)),
                 is_held: false,
             }
+        })
+    }
+
+    /// A cause whose one number is at the end of what its law is made for, as an oil that heats up is to one of locks
+    /// that hardly damp. Numbers beside others, and shares, may be anything.
+    fn at_its_end(&self) -> impl Iterator<Item = Objection> {
+        self.believed().filter_map(|cause| {
+            let Fit { hypothesis, values, .. } = &cause.fit;
+            let ([p], [value]) = (hypothesis.effect.parameters, &values[..]) else { return None };
+            let is_at = |end: &f64| (value - end).abs() <= END * (p.range[1] - p.range[0]);
+            let end = p.range.into_iter().find(|end| is_at(end) && !is_at(&p.neutral))?;
+            Some(Objection {
+                times: AT_ITS_END,
+                why: format!("its {} would have to be beyond {end}, where its law ends", p.name),
+                at: None,
+                is_held: false,
+            })
         })
     }
 
@@ -252,6 +278,19 @@ mod tests {
             Findings { held, ..Findings::default() }.objection().times
         };
         assert!(of(12.0) < 1.0 && of(19.0) > 3.0);
+    }
+
+    #[test]
+    fn a_cause_at_the_end_of_its_law_is_not_believed() {
+        let of = |name: &str, value: f64| {
+            let mut cause = Candidate::made_up(name, Scope::All, 90.0);
+            cause.fit.values[0] = value;
+            Findings { single: vec![cause], ..Findings::default() }.objection()
+        };
+        let ended = of("lock-damping", 0.1);
+        assert!(ended.times > 1.5 && ended.why.contains("beyond 0.1"), "{ended:?}");
+        assert!(of("lock-damping", 0.17).times < 1.0 && of("arm-delay", 0.0).times < 1.0);
+        assert!(of("accumulator-gas", 1.0).times < 1.0);
     }
 
     #[test]

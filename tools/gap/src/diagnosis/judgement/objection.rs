@@ -25,6 +25,8 @@ const HELD: f64 = 1.5;
 /// How strongly it speaks against a cause that its one number is where its law ends: it would go on. Of right answers
 /// none is there.
 const AT_ITS_END: f64 = 2.0;
+/// Evidence of the cause from which that counts, nats: what bends to next to nothing bends as far as it can.
+const ENDED_MIN: f64 = 36.0;
 /// Share of a range within which a number is at the end of it.
 const END: f64 = 1e-3;
 /// Share of a gap's square beyond which the causes believed explain none of it there.
@@ -149,7 +151,8 @@ impl Findings {
     /// A cause whose one number is at the end of what its law is made for, as an oil that heats up is to one of locks
     /// that hardly damp. Numbers beside others, and shares, may be anything.
     fn at_its_end(&self) -> impl Iterator<Item = Objection> {
-        self.believed().filter_map(|cause| {
+        let shown = self.believed().filter(|cause| cause.score() > ENDED_MIN);
+        shown.filter_map(|cause| {
             let Fit { hypothesis, values, .. } = &cause.fit;
             let ([p], [value]) = (hypothesis.effect.parameters, &values[..]) else { return None };
             let is_at = |end: &f64| (value - end).abs() <= END * (p.range[1] - p.range[0]);
@@ -282,15 +285,19 @@ mod tests {
 
     #[test]
     fn a_cause_at_the_end_of_its_law_is_not_believed() {
-        let of = |name: &str, value: f64| {
-            let mut cause = Candidate::made_up(name, Scope::All, 90.0);
+        let of = |name: &str, value: f64, nats: f64| {
+            let mut cause = Candidate::made_up(name, Scope::All, nats);
             cause.fit.values[0] = value;
             Findings { single: vec![cause], ..Findings::default() }.objection()
         };
-        let ended = of("lock-damping", 0.1);
+        let ended = of("lock-damping", 0.1, 90.0);
         assert!(ended.times > 1.5 && ended.why.contains("beyond 0.1"), "{ended:?}");
-        assert!(of("lock-damping", 0.17).times < 1.0 && of("arm-delay", 0.0).times < 1.0);
-        assert!(of("accumulator-gas", 1.0).times < 1.0);
+        assert!(
+            of("lock-damping", 0.1, 20.0).times < 1.0 && of("lock-damping", 0.17, 90.0).times < 1.0
+        );
+        assert!(
+            of("arm-delay", 0.0, 90.0).times < 1.0 && of("accumulator-gas", 1.0, 90.0).times < 1.0
+        );
     }
 
     #[test]

@@ -103,8 +103,7 @@ mod tests {
         effects.hysteresis.width = 0.04;
         let valve = Valve::new(&Machine::xt28(), &effects);
         let mut state = valve.held_off(0.1, -0.5, 0.005);
-        let at: Vec<f64> =
-            [0.1, 0.105, 0.15].map(|command| valve.step(&mut state, command, 0.005)).to_vec();
+        let at = [0.1, 0.105, 0.15].map(|command| valve.step(&mut state, command, 0.005));
         assert!((at[0] - 0.09).abs() < 1e-12 && at[1] == at[0], "{at:?}");
         assert!((at[2] - 0.13).abs() < 1e-12, "{at:?}");
     }

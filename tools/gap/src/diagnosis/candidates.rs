@@ -10,6 +10,8 @@ use xt28_sim::effects::Effect;
 use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left, Uneven};
 use super::hypothesis::Fit;
+#[cfg(test)]
+use super::hypothesis::Hypothesis;
 use super::knob::Knob;
 use super::overlap::Paid;
 use super::search::search;
@@ -92,8 +94,7 @@ impl Candidate {
     pub(super) fn made_up(name: &str, scope: xt28_sim::effects::Scope, score: f64) -> Self {
         let effect = xt28_sim::effects::find(name).unwrap();
         let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
-        let (hypothesis, sigma) =
-            (super::hypothesis::Hypothesis { effect, scope }, vec![0.0; values.len()]);
+        let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
         Self { fit, held_gain: None, own_share: 1.0 }
     }

@@ -32,6 +32,7 @@ pub use echo::Echo;
 #[cfg(test)]
 pub(super) use halves::Half;
 pub use halves::Uneven;
+pub(super) use halves::{BEND_RAD, SHUT};
 pub use left::Left;
 use left::{cost_of_squares, with_bumps};
 use stack::Group;

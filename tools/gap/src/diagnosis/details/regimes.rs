@@ -3,6 +3,7 @@
 use xt28_machine::{Machine, Wheel};
 
 use super::{Pair, STEP_S, rms, wheel_of};
+use crate::diagnosis::evidence::{BEND_RAD, SHUT};
 use crate::diagnosis::excitation::UNLOADED_N;
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{DT_S, Signals};
@@ -25,8 +26,6 @@ pub const REGIMES: [&str; 12] = [
     "in a bend",
 ];
 
-/// An opening below this is a shut valve.
-const SHUT: f64 = 0.01;
 /// Closer than this to an end of its stroke an arm may meet it, m.
 const NEAR_END_M: f64 = 0.02;
 /// Shares of its usual load below which an arm carries little, and above which much.
@@ -35,8 +34,6 @@ const USUAL: [f64; 2] = [0.8, 1.2];
 const STANDS_M_S: f64 = 0.05;
 /// A change of speed above this is not a steady drive, m/s2.
 const STEADY_M_S2: f64 = 0.1;
-/// A joint beyond this makes a bend, rad.
-const BEND_RAD: f64 = 0.05;
 
 /// One generator's gaps.
 #[derive(Clone, Debug, PartialEq)]

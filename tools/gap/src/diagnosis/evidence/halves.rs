@@ -13,13 +13,13 @@ use crate::diagnosis::generator::Generator;
 use crate::diagnosis::signals::{DT_S, Signals};
 
 /// An opening below this is a shut valve.
-const SHUT: f64 = 0.01;
-/// Slower than this the machine does not drive, m/s.
-const DRIVES_M_S: f64 = 0.02;
-/// Faster than this it is fast, m/s.
-const FAST_M_S: f64 = 0.25;
+pub(in crate::diagnosis) const SHUT: f64 = 0.01;
+/// Wheels that turn slower than this do not drive the machine, rad/s.
+const DRIVES_RAD_S: f64 = 0.02;
+/// Faster than this they are fast, rad/s.
+const FAST_RAD_S: f64 = 0.25;
 /// A joint beyond this makes a bend, rad.
-const BEND_RAD: f64 = 0.05;
+pub(in crate::diagnosis) const BEND_RAD: f64 = 0.05;
 
 /// By what the samples of a signal are halved; what is named is in the half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,7 +181,7 @@ impl<'a> Scene<'a> {
             Generator::ArmStroke(w) | Generator::ArmEcu(w) => (s.opening[w][i], SHUT),
             Generator::Joint(j) | Generator::SteerEcu(j) => (s.steer_opening[j][i], SHUT),
             Generator::Turning => (s.steer_opening[0][i], SHUT),
-            _ => (s.mean_wheel_speed_rad_s(i), DRIVES_M_S),
+            _ => (s.mean_wheel_speed_rad_s(i), DRIVES_RAD_S),
         };
         (by.abs() > least).then_some(by > 0.0)
     }
@@ -192,7 +192,7 @@ impl<'a> Scene<'a> {
             Generator::ArmStroke(w) | Generator::ArmEcu(w) => s.stroke_m[w][i] > self.middle[1],
             Generator::Joint(j) | Generator::SteerEcu(j) => s.joint_rad[j][i] > 0.0,
             Generator::Turning => s.joint_rad[0][i] > 0.0,
-            _ => s.mean_wheel_speed_rad_s(i).abs() > FAST_M_S,
+            _ => s.mean_wheel_speed_rad_s(i).abs() > FAST_RAD_S,
         })
     }
 }

@@ -1,5 +1,5 @@
-//! Prints what the logs of a machine say before it is judged: evidence of each cause in nats, what the
-//! best one leaves on each signal in floors (root mean square, and the third largest of its bumps), how
+//! Prints what the logs of a machine say before it is judged: evidence of each cause in nats (and of how much it
+//! could foretell it does), what the best one leaves on each signal in floors (root mean square, and the third largest of its bumps), how
 //! much of that is what it explains moved in time, and where the tolerances go with it and without any.
 //!
 //! ```sh
@@ -104,9 +104,10 @@ fn line(cause: &Candidate) -> String {
     let values: Vec<String> = fit.values.iter().map(|value| format!("{value:.4}")).collect();
     let held = cause.held_gain.map_or("-".to_owned(), |held| format!("{held:.1}"));
     format!(
-        "{:7.1} nats ({:.1} fitted, {held} foretold, {:.2} its own) {} {} = {}{}",
+        "{:7.1} nats ({:.1} fitted, {held} of {:.1} foretold, {:.2} its own) {} {} = {}{}",
         cause.score(),
         fit.log_evidence,
+        cause.held_most,
         cause.own_share,
         fit.hypothesis.effect.name,
         fit.hypothesis.scope,

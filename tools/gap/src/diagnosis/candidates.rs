@@ -33,6 +33,8 @@ pub struct Candidate {
     /// What the same values gain on the runs held out, nats; below zero they do harm. None where none
     /// was held out, or where none of them shows it: a pump is not short while no arm moves.
     pub held_gain: Option<f64>,
+    /// What that could be at most, nats: if the machine were just so.
+    pub held_most: f64,
     /// Share of what it gains that another law of the cause beside it could not explain: one where it is
     /// the first.
     pub own_share: f64,
@@ -42,8 +44,13 @@ pub struct Candidate {
 /// right cause explains two to nine times as much on the runs fitted as it foretells of the others; what
 /// bends to the first alone explains how two models differ.
 const FORETOLD: [f64; 2] = [8.0, 8.0];
-/// The same of a second cause: true ones explain one to four times as much as they foretell.
-const SECOND_FORETOLD: [f64; 2] = [8.0, 1.0];
+/// Share of what it could foretell at most that a second cause must: true ones foretell four tenths and more, most
+/// of them nearly all.
+const SECOND_FORETOLD: f64 = 0.5;
+/// What a cause is allowed for chance there, nats.
+const CHANCE: f64 = 1.0;
+/// Runs held out that could tell less of a cause than this say nothing of it, nats.
+const TELLING_MIN: f64 = 3.0;
 
 /// All runs around one state of belief.
 pub(super) struct Docket<'a> {
@@ -61,13 +68,29 @@ impl Candidate {
     /// foretells next to nothing has no more than that.
     #[must_use]
     pub fn score(&self) -> f64 {
-        self.foretelling(FORETOLD)
+        let [times, beside] = FORETOLD;
+        let most = self.foretold().map(|[held, _]| times * (held + beside));
+        self.own_share * most.map_or(self.told(), |most| self.told().min(most))
     }
 
     /// The same where it is to stand beside a first cause: what that leaves of the runs fitted, another
-    /// law bends to, and foretells nothing.
+    /// law bends to, and foretells little of what it would.
     pub(super) fn second_score(&self) -> f64 {
-        self.foretelling(SECOND_FORETOLD)
+        let share = self.foretold().map_or(1.0, |[held, most]| {
+            ((held + CHANCE) / (SECOND_FORETOLD * (most + CHANCE))).clamp(0.0, 1.0)
+        });
+        share * self.score()
+    }
+
+    /// What all runs say of it, nats.
+    fn told(&self) -> f64 {
+        self.fit.log_evidence + self.held_gain.unwrap_or_default()
+    }
+
+    /// What it foretells of the runs held out, and what it could at most; `None` where they could not tell.
+    fn foretold(&self) -> Option<[f64; 2]> {
+        let held = self.held_gain.filter(|_| self.held_most > TELLING_MIN)?;
+        Some([held, self.held_most])
     }
 
     /// Whether a `second` beside it would be more of the same from a later instant of every run on: both set
@@ -81,11 +104,6 @@ impl Candidate {
             && own.hypothesis.effect.block == other.hypothesis.effect.block
             && Wheel::ALL.into_iter().any(is_on_both)
     }
-
-    fn foretelling(&self, [times, beside]: [f64; 2]) -> f64 {
-        let sum = self.fit.log_evidence + self.held_gain.unwrap_or_default();
-        self.own_share * self.held_gain.map_or(sum, |held| sum.min(times * (held + beside)))
-    }
 }
 
 #[cfg(test)]
@@ -96,7 +114,7 @@ impl Candidate {
         let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
         let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Self { fit, held_gain: None, own_share: 1.0 }
+        Self { fit, held_gain: None, held_most: 0.0, own_share: 1.0 }
     }
 }
 
@@ -122,11 +140,14 @@ impl<'a> Docket<'a> {
         let leading = all.par_iter().take(ASKED).filter(|candidate| candidate.score() > near);
         let settled: Vec<Candidate> = leading.filter_map(|found| self.settled(found)).collect();
         merge(&mut all, settled);
-        let asked = asked(&all).into_par_iter();
+        let asked = self::asked(&all).into_par_iter();
         let late: Vec<Candidate> = asked.filter_map(|candidate| self.set_in(candidate)).collect();
         merge(&mut all, late);
         let elsewhere = all.first().map_or(Vec::new(), |best| self.elsewhere(best));
         merge(&mut all, elsewhere);
+        let asked = self::asked(&all).into_par_iter();
+        let begun: Vec<Candidate> = asked.filter_map(|found| self.begun_for_all(found)).collect();
+        merge(&mut all, begun);
         all
     }
 
@@ -222,7 +243,9 @@ impl<'a> Docket<'a> {
         let held_gain = self.held.as_ref().map(|held| (gain(held), anew(held, &fit)));
         let held_gain = held_gain.filter(|(gain, _)| *gain != 0.0).map(|(gain, anew)| gain - anew);
         fit.log_evidence -= anew(&self.fit, &fit);
-        Candidate { fit, held_gain, own_share: 1.0 }
+        let most = |held: &Evidence<'_>| fit.hypothesis.most(held, fit.from_s, &fit.values);
+        let held_most = self.held.as_ref().filter(|_| held_gain.is_some()).map_or(0.0, most);
+        Candidate { fit, held_gain, held_most, own_share: 1.0 }
     }
 }
 

@@ -115,6 +115,24 @@ impl<'a> Evidence<'a> {
         self.cost_of(&self.sums(belief.into(), only))
     }
 
+    /// What belief would gain if the machine were as believed to the letter, nats: what the base then costs,
+    /// tolerances at their best. Next to nothing is what no drive of these runs makes show.
+    #[must_use]
+    pub(super) fn most(&self, belief: Belief<'_>, only: &dyn Fn(Generator) -> bool) -> f64 {
+        let sums = |watch: &Watch| {
+            let mut values = watch.stack.values.clone();
+            if only(watch.stack.generator) {
+                let believed = watch.values(self.runs, &self.machine, belief);
+                values.iter_mut().zip(believed).for_each(|(value, believed)| *value -= believed);
+            } else {
+                values.fill(0.0);
+            }
+            Cow::Owned(watch.sums_of(&values))
+        };
+        let sums: Vec<Cow<'_, Sums>> = self.watches.iter().map(sums).collect();
+        0.5 * self.cost_of(&sums)
+    }
+
     /// What it costs to believe `effects` from each of `instants` of every run on, s; what generators of
     /// one wheel say of `values` there is remembered.
     pub(super) fn costs_remembered(

@@ -124,6 +124,14 @@ impl Hypothesis {
         0.5 * (evidence.base_cost() - evidence.cost(belief, &only))
     }
 
+    /// What that could be at most: if the machine were just so.
+    #[must_use]
+    pub(super) fn most(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+        let effects = self.applied(evidence.base(), values);
+        let only = |generator: Generator| generator.hears(self.effect, self.scope);
+        evidence.most(Belief { effects: &effects, from_s }, &only)
+    }
+
     /// The same for an effect that sets in at each of `instants` of every run, s.
     pub(super) fn onset_gains(
         &self,

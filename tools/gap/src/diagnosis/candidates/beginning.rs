@@ -5,7 +5,7 @@ use xt28_sim::effects::{Block, Parameter};
 
 use super::super::evidence::Evidence;
 use super::super::hypothesis::{Fit, Hypothesis};
-use super::{Candidate, Docket};
+use super::{Candidate, Docket, OPEN};
 
 /// Instants of every run at which an effect may set in, s.
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
@@ -22,6 +22,11 @@ const BEGUN_SIGMA: f64 = 2.0;
 const BARELY: f64 = 2.0e-3;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
+/// How far from the beginning that explains the runs fitted best another may be that they leave open, and
+/// how far apart those that are tried are, s: nothing of it shows until a machine moves.
+const OPEN_FOR_S: [f64; 2] = [3.0, 0.1];
+/// Beginnings that explain as much but for this are alike, nats: the one in their middle is told.
+const ALIKE: f64 = 0.1;
 /// The widest and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
 /// for a tenth of a second beside it, in every run.
 const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.03];
@@ -59,6 +64,30 @@ impl Docket<'_> {
         let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at_s, &found.fit.values)));
         let least = if is_late { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
+    }
+
+    /// One that sets in late with another beginning, of those that the runs fitted leave open, which suits the runs
+    /// held out better: what sets in while the runs fitted stand still is told by one that moves.
+    pub(super) fn begun_for_all(&self, found: &Candidate) -> Option<Candidate> {
+        let Fit { hypothesis, from_s, ref values, .. } = found.fit;
+        let held = self.held.as_ref().filter(|_| from_s > 0.0)?;
+        let [reach_s, step_s] = OPEN_FOR_S;
+        let count = (2.0 * reach_s / step_s).round() as usize;
+        let instants = (0..=count).map(|k| from_s - reach_s + k as f64 * step_s);
+        let instants: Vec<f64> = instants.filter(|at_s| *at_s > 0.0).collect();
+        let gains = |evidence| hypothesis.onset_gains(evidence, &instants, values);
+        let here = hypothesis.gain(&self.fit, from_s, values);
+        let least = here * (1.0 - OPEN[1]) - OPEN[0];
+        let each = instants.iter().zip(gains(&self.fit).into_iter().zip(gains(held)));
+        let open = each.filter(|(_, (fitted, _))| *fitted > least);
+        let both: Vec<(f64, f64)> =
+            open.map(|(at_s, (fitted, held))| (*at_s, fitted + held)).collect();
+        let most = both.iter().map(|(_, gain)| *gain).fold(f64::NEG_INFINITY, f64::max);
+        let best: Vec<f64> =
+            both.iter().filter(|(_, gain)| *gain > most - ALIKE).map(|(at_s, _)| *at_s).collect();
+        let at_s = *best.get(best.len() / 2)?;
+        let moved = self.weighed(hypothesis.refit(&self.fit, at_s, values));
+        (moved.score() > found.score()).then_some(moved)
     }
 
     /// The same with its beginning where it explains most, its values anew after every step there: a leak
@@ -143,7 +172,7 @@ mod tests {
         for (k, (from_s, nats)) in [(12.0, 300.0), (0.0, 900.0)].into_iter().enumerate() {
             let beside = &mut all[10 + k];
             (beside.fit.from_s, beside.fit.log_evidence) = (from_s, nats);
-            beside.held_gain = Some(-200.0);
+            (beside.held_gain, beside.held_most) = (Some(-200.0), 200.0);
         }
         let asked = asked(&all);
         assert_eq!(asked.len(), ASKED + 1);

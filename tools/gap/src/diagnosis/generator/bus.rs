@@ -1,8 +1,9 @@
 //! What reaches the ECUs, and when: frames that are missing, frames that are late.
 //!
 //! Commands come by one clock, every ten milliseconds where a gateway keeps the wire contract. Loss leaves holes in that row and every frame
-//! that comes in its place; lateness moves frames off their places and loses none. What is expected, and how
-//! far chance leads from it within a second, is that of the effects' own law, on a long row of frames.
+//! that comes in its place; lateness moves frames off their places and loses none. What is expected is that of
+//! the effects' own law, on a long row of frames; how far chance leads from it within a second is what the seconds
+//! of the log differ by, whatever is believed: a loss that is believed larger must not excuse more.
 
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
 
@@ -42,32 +43,43 @@ const ROW: u32 = 200;
 #[must_use]
 pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
     let period_s = command_period_s(signals);
-    let expected = Expected::of(effects, period_s);
+    let expected = expected(effects, period_s);
     let samples = (WINDOW_S / DT_S) as usize;
-    let mut errors = BusErrors::default();
-    for window in 0..signals.len / samples {
-        let fill = |to: &mut Samples, value: f64| to.extend(std::iter::repeat_n(value, samples));
-        if !signals.command_times_s.iter().all(|times| spans(times, window as f64)) {
-            for all in [&mut errors.missing, &mut errors.out_of_place, &mut errors.uneven] {
-                fill(all, f64::NAN);
-            }
-            continue;
-        }
-        let seen = signals
-            .command_times_s
-            .each_ref()
-            .map(|times| Row::of_window(times, window as f64, period_s));
-        let less = |of: fn(&Row) -> f64, signal: Signal, law: f64| {
-            let (mean, chance) = (of(&expected.mean), of(&expected.chance));
-            let floor = signal.floor().sigma;
-            let doubt = (chance / floor).hypot(law * mean / floor).hypot(1.0);
-            (mean - (of(&seen[0]) + of(&seen[1])) / 2.0) / doubt
-        };
-        fill(&mut errors.missing, less(|row| row.missing, Signal::BusMissing, 0.0));
-        fill(&mut errors.out_of_place, less(|row| row.out_of_place, Signal::BusPlace, ANOTHER_LAW));
-        fill(&mut errors.uneven, less(|row| row.uneven, Signal::BusUneven, ANOTHER_LAW));
+    let seen: Vec<Option<Row>> =
+        (0..signals.len / samples).map(|window| seen(signals, window as f64, period_s)).collect();
+    let errors_of = |of: fn(&Row) -> f64, signal: Signal, law: f64| -> Samples {
+        let (mean, floor) = (of(&expected), signal.floor().sigma);
+        let doubt = (chance(&seen, of) / floor).hypot(law * mean / floor).hypot(1.0);
+        let each = seen.iter().map(|row| row.map_or(f64::NAN, |row| (mean - of(&row)) / doubt));
+        each.flat_map(|value| std::iter::repeat_n(value, samples)).collect()
+    };
+    BusErrors {
+        missing: errors_of(|row| row.missing, Signal::BusMissing, 0.0),
+        out_of_place: errors_of(|row| row.out_of_place, Signal::BusPlace, ANOTHER_LAW),
+        uneven: errors_of(|row| row.uneven, Signal::BusUneven, ANOTHER_LAW),
     }
-    errors
+}
+
+/// Mean of what arms' and drive's commands look like within a window; `None` where nobody sent any.
+fn seen(signals: &Signals, window: f64, period_s: f64) -> Option<Row> {
+    if !signals.command_times_s.iter().all(|times| spans(times, window)) {
+        return None;
+    }
+    let [arms, drive] =
+        signals.command_times_s.each_ref().map(|times| Row::of_window(times, window, period_s));
+    Some(Row {
+        missing: (arms.missing + drive.missing) / 2.0,
+        out_of_place: (arms.out_of_place + drive.out_of_place) / 2.0,
+        uneven: (arms.uneven + drive.uneven) / 2.0,
+    })
+}
+
+/// Standard deviation from window to window, of windows that follow one another: what sets in once is no
+/// chance.
+fn chance(seen: &[Option<Row>], of: fn(&Row) -> f64) -> f64 {
+    let pairs = seen.windows(2).filter_map(|pair| Some(of(&pair[1]?) - of(&pair[0]?)));
+    let (count, squares) = pairs.fold((0, 0.0), |(n, sum), by| (n + 1, sum + by * by));
+    (squares / f64::from(2 * count.max(1))).sqrt()
 }
 
 /// Whether somebody sent commands from the beginning of a window to its end: before the first command and
@@ -78,31 +90,16 @@ fn spans(times_s: &[f64], window: f64) -> bool {
     *first <= from + BEGINS_S && *last >= to - BEGINS_S
 }
 
-/// What a row of one window looks like under an effect.
-struct Expected {
-    mean: Row,
-    /// Standard deviation from window to window.
-    chance: Row,
-}
-
-impl Expected {
-    fn of(effects: &Effects, period_s: f64) -> Self {
-        let times_s = expected_times_s(effects, period_s);
-        let rows: Vec<Row> =
-            (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k), period_s)).collect();
-        let mean_of =
-            |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
-        let mean = Row {
-            missing: mean_of(&|row| row.missing),
-            out_of_place: mean_of(&|row| row.out_of_place),
-            uneven: mean_of(&|row| row.uneven),
-        };
-        let chance = Row {
-            missing: mean_of(&|row| (row.missing - mean.missing).powi(2)).sqrt(),
-            out_of_place: mean_of(&|row| (row.out_of_place - mean.out_of_place).powi(2)).sqrt(),
-            uneven: mean_of(&|row| (row.uneven - mean.uneven).powi(2)).sqrt(),
-        };
-        Self { mean, chance }
+/// What a row of one window looks like under an effect, in the mean.
+fn expected(effects: &Effects, period_s: f64) -> Row {
+    let times_s = expected_times_s(effects, period_s);
+    let rows: Vec<Row> =
+        (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k), period_s)).collect();
+    let mean = |of: fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+    Row {
+        missing: mean(|row| row.missing),
+        out_of_place: mean(|row| row.out_of_place),
+        uneven: mean(|row| row.uneven),
     }
 }
 
@@ -167,7 +164,7 @@ mod tests {
         let mut effects = Effects::default();
         effects.bus.frame_loss.share = loss;
         effects.bus.command_jitter.latest_s = late_s;
-        Expected::of(&effects, PERIOD_S).mean
+        expected(&effects, PERIOD_S)
     }
 
     /// A run of ten seconds whose commands come `period_s` apart, all but every tenth.
@@ -190,6 +187,26 @@ mod tests {
             let largest = errors.missing.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
             assert!(largest < 1.5, "{period_s}: {largest}");
         }
+    }
+
+    #[test]
+    fn a_loss_that_is_believed_larger_excuses_no_more() {
+        let mut signals = commanded(PERIOD_S);
+        let mut random = ChaCha8Rng::seed_from_u64(3);
+        let kept = (0..1000).filter(|_| random.random::<f64>() >= 0.08);
+        let times_s: Vec<f64> = kept.map(|k| (f64::from(k) + 0.5) * PERIOD_S).collect();
+        #[allow(clippy::cast_precision_loss)]
+        let lost = 1.0 - times_s.len() as f64 / 1000.0;
+        signals.command_times_s = [times_s.clone(), times_s];
+        let left = |share: f64| -> f64 {
+            let mut effects = Effects::default();
+            effects.bus.frame_loss.share = share;
+            let errors = bus_errors(&signals, &effects).missing;
+            errors.iter().filter(|e| e.is_finite()).map(|e| e * e).sum()
+        };
+        let shares = (0..100).map(|k| 0.04 + 0.001 * f64::from(k));
+        let best = shares.min_by(|a, b| left(*a).total_cmp(&left(*b))).unwrap();
+        assert!((best - lost).abs() < 0.005, "{best}, lost are {lost}");
     }
 
     /// The least that any lateness of ours leaves of frames late by another law, floors.

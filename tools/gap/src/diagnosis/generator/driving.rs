@@ -68,7 +68,13 @@ fn pressure_errors(
         };
         let out = drive.step(&mut state, &input, DT_S);
         let p = out.pump_pressure_pa;
-        idle_nm.push(out.hold_nm.sum() / 6.0);
+        // What is asked idles a motor, or what is left of it behind a drive that lags: a matter of makes.
+        let asked_rad_s = asked * machine.drive.speed_full_m_s / machine.wheels.radius_m;
+        let idle = effects
+            .wheels
+            .iter()
+            .map(|(w, e)| e.standstill_drag.holds_nm(asked_rad_s).max(out.hold_nm[w]));
+        idle_nm.push(idle.sum::<f64>() / 6.0);
         since_s += DT_S;
         if signals.is_fresh_pump_pressure[i] {
             let over = circuits_pa(signals, i);
@@ -158,9 +164,18 @@ mod tests {
     /// Largest torque not accounted for, Nm, of a machine that goes on by itself from 5 s on, faster by `gains_m_s2`,
     /// while nothing is asked of its motors.
     fn left_nm(gains_m_s2: f64, motors_hold_by_nm: f64) -> f64 {
+        left_behind_nm(0.0, gains_m_s2, motors_hold_by_nm)
+    }
+
+    /// The same of a machine whose drive lags by `lag_s`, until 5 s asked to go.
+    fn left_behind_nm(lag_s: f64, gains_m_s2: f64, motors_hold_by_nm: f64) -> f64 {
         let machine = Machine::xt28();
         let (mut s, mut effects) = (still(10), Effects::default());
         let from_m_s = if gains_m_s2 < 0.0 { 1.0 } else { 0.1 };
+        effects.drive.lag.time_constant_s = lag_s;
+        if lag_s > 0.0 {
+            s.throttle[..500].fill(1.0);
+        }
         for wheel in Wheel::ALL {
             effects.wheels[wheel].standstill_drag.torque_nm = motors_hold_by_nm;
             for i in 0..s.len {
@@ -180,6 +195,8 @@ mod tests {
         let [braked_nm, sped_nm] = [-0.8, 0.8].map(|gains_m_s2| left_nm(gains_m_s2, 5.0e3));
         assert!(braked_nm < 0.3 * braked, "{braked_nm} of {braked}");
         assert!(sped_nm > 0.9 * sped, "{sped_nm} of {sped}");
+        let lags_nm = left_behind_nm(2.0, -0.8, 5.0e3);
+        assert!(lags_nm < 0.3 * braked, "{lags_nm} of {braked} behind a drive that lags");
     }
 
     /// Largest error of the circuits' pressures, Pa, where BR spins at twice the speed of the others and its motor

@@ -9,6 +9,7 @@ mod layout;
 mod lean;
 mod motion;
 mod plane;
+mod strained;
 mod sway;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
@@ -97,21 +98,25 @@ const UNKNOWN: Error = Error {
 #[must_use]
 pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -> StanceErrors {
     let parts = Parts::new(machine, effects);
-    let carriers = INNER_SHARES.map(|inner_share| {
+    let mut carriers = INNER_SHARES.map(|inner_share| {
         PerWheel::from_fn(|w| Carrier::new(s, machine, effects, &parts, w, inner_share))
     });
     let instants = s.instants(|| instants::instants(s, machine));
     let ground = Grade::believed(s, effects);
-    let carried_by = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>| -> Vec<Error> {
-        let judge = |instant: &Instant| {
-            let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
-                return UNKNOWN;
-            };
-            let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
-            let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
-            judge(instant, &arms, &parts, (machine, effects), ground).unwrap_or(UNKNOWN)
+    let carried = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>, instant: &Instant| {
+        let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
+            return UNKNOWN;
         };
-        instants.iter().map(judge).collect()
+        let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
+        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
+        judge(instant, &arms, &parts, (machine, effects), ground).unwrap_or(UNKNOWN)
+    };
+    strain(&mut carriers, |carriers| {
+        let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
+        first.map(|instant| carried(carriers, None, instant)).collect()
+    });
+    let carried_by = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>| -> Vec<Error> {
+        instants.iter().map(|instant| carried(carriers, holds, instant)).collect()
     };
     let rolls_hard = effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0);
     let inner_shares = if rolls_hard { &carriers[..] } else { &carriers[..1] };
@@ -145,6 +150,32 @@ pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         contact_m: PerWheel::from_fn(|w| of(&|e| e.contact_m[w])),
         roll_sway_rad,
         pitch_sway_rad,
+    }
+}
+
+/// Has the seals hold as the log begins what leaves least then of the weight and its place; `judge` says the errors
+/// of its first seconds.
+fn strain<'a>(
+    carriers: &mut [PerWheel<Carrier<'a>>; 3],
+    judge: impl Fn(&PerWheel<Carrier<'a>>) -> Vec<Error>,
+) {
+    let most_n = PerWheel::from_fn(|w| carriers[0][w].seal.most_n);
+    if most_n.iter().all(|(_, most_n)| *most_n == 0.0) {
+        return;
+    }
+    let mut trial = carriers[0].clone();
+    let begins_n = strained::begun_n(&most_n, |begins_n| {
+        for w in Wheel::ALL {
+            trial[w].seal.begins_n = begins_n[w];
+        }
+        let weights = judge(&trial).into_iter().step_by(STANDING).map(|error| error.weight);
+        let signals = [Signal::Weight, Signal::WeightX, Signal::WeightY];
+        weights.flat_map(|w| [0, 1, 2].map(|k| w[k] / signals[k].floor().sigma)).collect()
+    });
+    for own in carriers {
+        for w in Wheel::ALL {
+            own[w].seal.begins_n = begins_n[w];
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::diagnosis::verdict::{Beginning, Cause, Estimate};
 /// sharply that turns; and the share of the first's evidence by which that rises where another law of
 /// the first could explain all of the second's: what a large cause leaves, another law takes for a
 /// second one.
-const SECOND: [f64; 2] = [25.0, 5.0];
+const SECOND: [f64; 2] = [20.0, 5.0];
 const SECOND_SHARE: f64 = 0.08;
 /// Share of the best evidence, nats, by which evidence is taken to be uncertain.
 const TEMPERATURE_SHARE: f64 = 0.03;
@@ -152,11 +152,14 @@ mod tests {
 
     #[test]
     fn a_second_cause_has_to_foretell_what_it_explains() {
-        let second = |held| Candidate {
+        let second = |held, most| Candidate {
             held_gain: Some(held),
+            held_most: most,
             ..Candidate::made_up("pressure-bias", Scope::All, 35.0)
         };
-        assert!(is_second(&second(2.0), 110.0) < 0.5);
-        assert!(is_second(&second(12.0), 110.0) > 0.9);
+        assert!(is_second(&second(2.0, 12.0), 110.0) < 0.5);
+        assert!(is_second(&second(12.0, 12.0), 110.0) > 0.9);
+        // Motors that hold at a standstill, where the machine of the runs held out never stands.
+        assert!(is_second(&second(-0.5, 0.2), 110.0) > 0.8);
     }
 }

@@ -29,6 +29,8 @@ const AT_ITS_END: f64 = 2.0;
 const ENDED_MIN: f64 = 36.0;
 /// Share of a range within which a number is at the end of it.
 const END: f64 = 1e-3;
+/// Standard deviation, in tolerances, from which a number may as well be well within its range.
+const WIDE: f64 = 0.15;
 /// Share of a gap's square beyond which the causes believed explain none of it there.
 const STRANGE: f64 = 0.64;
 
@@ -153,8 +155,11 @@ impl Findings {
     fn at_its_end(&self) -> impl Iterator<Item = Objection> {
         let shown = self.believed().filter(|cause| cause.score() > ENDED_MIN);
         shown.filter_map(|cause| {
-            let Fit { hypothesis, values, .. } = &cause.fit;
+            let Fit { hypothesis, values, sigma, .. } = &cause.fit;
             let ([p], [value]) = (hypothesis.effect.parameters, &values[..]) else { return None };
+            if sigma[0] > WIDE * p.tolerance {
+                return None;
+            }
             let is_at = |end: &f64| (value - end).abs() <= END * (p.range[1] - p.range[0]);
             let end = p.range.into_iter().find(|end| is_at(end) && !is_at(&p.neutral))?;
             Some(Objection {
@@ -285,13 +290,15 @@ mod tests {
 
     #[test]
     fn a_cause_at_the_end_of_its_law_is_not_believed() {
-        let of = |name: &str, value: f64, nats: f64| {
+        let known_to = |sigma: f64, name: &str, value: f64, nats: f64| {
             let mut cause = Candidate::made_up(name, Scope::All, nats);
-            cause.fit.values[0] = value;
+            (cause.fit.values[0], cause.fit.sigma[0]) = (value, sigma);
             Findings { single: vec![cause], ..Findings::default() }.objection()
         };
+        let of = |name: &str, value: f64, nats: f64| known_to(0.01, name, value, nats);
         let ended = of("lock-damping", 0.1, 90.0);
         assert!(ended.times > 1.5 && ended.why.contains("beyond 0.1"), "{ended:?}");
+        assert!(known_to(0.1, "lock-damping", 0.1, 90.0).times < 1.0, "it may as well be 0.2");
         assert!(
             of("lock-damping", 0.1, 20.0).times < 1.0 && of("lock-damping", 0.17, 90.0).times < 1.0
         );

@@ -6,12 +6,14 @@ use xt28_sim::{Effects, Parts};
 use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
+use super::strained::Seal;
 use crate::diagnosis::gauge::Gauge;
 use crate::diagnosis::generator::press::own_n;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// One arm as believed: how its sensors read and what hinders it.
+#[derive(Clone)]
 pub(super) struct Carrier<'a> {
     wheel: Wheel,
     parts: &'a Parts,
@@ -27,8 +29,8 @@ pub(super) struct Carrier<'a> {
     inner_share: f64,
     /// Grip of the ground.
     friction: f64,
-    /// Friction of the seals as late as the pressures are, N; empty without any.
-    seal_n: Samples,
+    /// Friction of its seals.
+    pub(super) seal: Seal,
 }
 
 impl<'a> Carrier<'a> {
@@ -51,7 +53,7 @@ impl<'a> Carrier<'a> {
                 * machine.wheels.radius_m,
             inner_share,
             friction: machine.wheels.friction,
-            seal_n: seal_friction_n(s, effects, wheel),
+            seal: seal(s, effects, wheel),
         }
     }
 
@@ -91,7 +93,7 @@ impl<'a> Carrier<'a> {
         let e = &self.effects.wheels[self.wheel];
         let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
         let oil_n = self.gauge.load_n(load_n, rod_n);
-        let cylinder_n = oil_n - self.seal_n.get(instant.sample).copied().unwrap_or(0.0);
+        let cylinder_n = oil_n - self.seal.at_n(instant.sample);
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
         let extends = self.parts.arms[self.wheel].extends;
@@ -124,19 +126,49 @@ impl Moments {
     }
 }
 
-/// Friction of the seals on the measured motion, as late as the pressures are; N.
-fn seal_friction_n(s: &Signals, effects: &Effects, wheel: Wheel) -> Samples {
+/// The seals on the measured motion.
+fn seal(s: &Signals, effects: &Effects, wheel: Wheel) -> Seal {
     let law = &effects.arms[wheel].stiction;
-    if law.coulomb_n + law.stribeck_n == 0.0 {
-        return Samples::new();
+    let most_n = law.coulomb_n + law.stribeck_n;
+    if most_n == 0.0 {
+        return Seal::default();
     }
     let scale = effects.wheels[wheel].stroke_scale.factor;
-    let mut friction_n = 0.0;
+    let (mut friction_n, mut left) = (0.0, 1.0);
     let mut last_m = None;
     let step = |stroke_m: f64| {
         let travel_m = stroke_m - last_m.replace(stroke_m).unwrap_or(stroke_m);
-        friction_n = law.step(friction_n, travel_m / DT_S / scale, DT_S);
-        friction_n
+        let rate_m_s = travel_m / DT_S / scale;
+        friction_n = law.step(friction_n, rate_m_s, DT_S);
+        // What it is where they were strained less what it is where they were not, as a share.
+        left *= law.ahead(1.0, rate_m_s, DT_S)[0];
+        (friction_n, left)
     };
-    lagged(unflickered(&s.smooth_stroke_m[wheel]).into_iter().map(step), PRESSURE_FILTER_S)
+    let both = unflickered(&s.smooth_stroke_m[wheel]).into_iter().map(step);
+    let (friction_n, left): (Samples, Samples) = both.unzip();
+    let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
+    Seal { friction_n: late(friction_n), left: late(left), most_n, begins_n: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Wheel;
+
+    use super::*;
+    use crate::diagnosis::generator::still::still;
+
+    #[test]
+    fn what_seals_held_before_is_gone_once_a_rod_has_slid() {
+        let (mut s, mut effects) = (still(10), Effects::default());
+        effects.arms[Wheel::Bl].stiction.coulomb_n = 8.0e3;
+        for (i, stroke_m) in s.smooth_stroke_m[Wheel::Bl].iter_mut().enumerate() {
+            *stroke_m = 0.2 + 2.0e-5 * i.saturating_sub(500) as f64;
+        }
+        let seal = seal(&s, &effects, Wheel::Bl);
+        assert_eq!((seal.left[400], seal.friction_n[400], seal.most_n), (1.0, 0.0, 8.0e3));
+        assert!(seal.left[999] < 1e-3 && seal.friction_n[999] > 7.9e3);
+        let strained = Seal { begins_n: -5.0e3, ..seal };
+        assert_eq!(strained.at_n(400), -5.0e3);
+        assert!(strained.at_n(999) > 7.9e3);
+    }
 }

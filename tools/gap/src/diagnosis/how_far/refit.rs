@@ -86,7 +86,8 @@ impl HowFar {
         let effects = self.turned(&turns, &at);
         let mut estimates = vec![Vec::new(); causes.len()];
         for ((turn, value), sigma) in turns.iter().zip(&at).zip(&sigma) {
-            let estimate = Estimate::new(turn.parameter, *value, *sigma);
+            let effect = causes[turn.cause].effect;
+            let estimate = Estimate::new(effect, turn.parameter, *value, *sigma);
             let before = causes[turn.cause].parameters.iter().find(|e| e.name == estimate.name);
             estimates[turn.cause].push(match before {
                 Some(before) if !turn.shows => *before,

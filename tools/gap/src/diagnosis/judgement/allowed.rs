@@ -45,9 +45,8 @@ struct Vague {
 const VAGUE: [Vague; 7] = [
     // How the machine came to rest is in no log.
     Vague { effects: &["seal-stiction", "standstill-drag"], shows: anywhere, share: 0.6 },
-    // Where a spool's play lies as a log begins is not known, nor whether it rests in between; nor how
-    // much oil stood where before an accumulator opened.
-    Vague { effects: &["valve-hysteresis", "accumulator-gas"], shows: anywhere, share: 0.25 },
+    // How much oil stood where before an accumulator opened is not known.
+    Vague { effects: &["accumulator-gas"], shows: anywhere, share: 0.25 },
     // What load an arm drifts at, and how fast near it, is each make's own.
     Vague { effects: &["unsupported-sag"], shows: anywhere, share: 0.15 },
     // One name for laws of some forms: an edge may be sharp or round, a speed go with a load or its root.
@@ -60,6 +59,7 @@ const VAGUE: [Vague; 7] = [
             "engine-droop",
             "slippery-ground",
             "soft-tyres",
+            "valve-hysteresis",
         ],
         shows: anywhere,
         share: 0.1,
@@ -235,7 +235,7 @@ mod tests {
         };
         assert!(of("valve-lag", Signal::Stroke, 100.0) > 2.0);
         assert!(of("valve-lag", Signal::Stroke, 5.0) < 1.0);
-        assert!(of("valve-hysteresis", Signal::Stroke, 100.0) < 1.0);
+        assert!(of("accumulator-gas", Signal::Stroke, 100.0) < 1.0);
         assert!(of("steer-lag", Signal::JointFast, 100.0) < 1.0);
     }
 

@@ -107,8 +107,9 @@ fn class(name: &'static str, weight: f64, of: &[(&'static str, f64)]) -> Vec<&'s
 
 fn estimates(candidate: &Candidate) -> Vec<Estimate> {
     let fit = &candidate.fit;
-    let parameters = fit.hypothesis.effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
-    parameters.map(|(p, (value, sigma))| Estimate::new(p, *value, *sigma)).collect()
+    let effect = fit.hypothesis.effect;
+    let parameters = effect.parameters.iter().zip(fit.values.iter().zip(&fit.sigma));
+    parameters.map(|(p, (value, sigma))| Estimate::new(effect, p, *value, *sigma)).collect()
 }
 
 #[cfg(test)]

@@ -76,6 +76,24 @@ fn a_leak_that_is_found_shrinks_the_gap_as_far_as_the_true_one() {
     }
 }
 
+/// A drive that lags from an instant on which only runs held out can tell, motors that hold where no run held out
+/// stands still, and seals that were strained before each log began.
+#[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "a diagnosis is slow unoptimised; run with --release, as CI does"
+)]
+fn what_only_some_of_the_runs_can_tell_is_told() {
+    let seeds = [(1_279_260_118, Kind::Single), (1_801_906_543, Kind::Pair)];
+    let seeds = seeds.into_iter().chain([(410_401_311, Kind::Single)]);
+    let drawn = seeds.map(|(seed, kind)| Source::Drawn(Box::new(Case::draw(seed, kind))));
+    let report = report(drawn.collect(), Options { how_far: false, baselines: false });
+    for score in ["stood by, first and true", "pairs, both stood by"] {
+        let value = report.score(score).expect("this score is in the table").value;
+        assert!(value >= 1.0, "{score}: {value}\n{}", report.text());
+    }
+}
+
 #[test]
 fn the_same_cases_come_to_the_same_report() {
     let delay = Cause::find("arm-delay").unwrap();

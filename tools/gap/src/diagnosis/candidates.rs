@@ -44,7 +44,7 @@ pub struct Candidate {
 /// right cause explains two to nine times as much on the runs fitted as it foretells of the others; what
 /// bends to the first alone explains how two models differ.
 const FORETOLD: [f64; 2] = [8.0, 8.0];
-/// Share of what it could foretell at most that a second cause must: true ones foretell four tenths and more, most
+/// Share of what it could foretell at most that a second cause must: true ones foretell a third and more, most
 /// of them nearly all.
 const SECOND_FORETOLD: f64 = 0.5;
 /// What a cause is allowed for chance there, nats.

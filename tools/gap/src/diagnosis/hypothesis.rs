@@ -119,17 +119,15 @@ impl Hypothesis {
     #[must_use]
     pub fn gain(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
         let effects = self.applied(evidence.base(), values);
-        let only = |generator: Generator| generator.hears(self.effect, self.scope);
         let belief = Belief { effects: &effects, from_s };
-        0.5 * (evidence.base_cost() - evidence.cost(belief, &only))
+        0.5 * (evidence.base_cost() - evidence.cost(belief, &self.heard()))
     }
 
     /// What that could be at most: if the machine were just so.
     #[must_use]
     pub(super) fn most(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
         let effects = self.applied(evidence.base(), values);
-        let only = |generator: Generator| generator.hears(self.effect, self.scope);
-        evidence.most(Belief { effects: &effects, from_s }, &only)
+        evidence.most(Belief { effects: &effects, from_s }, &self.heard())
     }
 
     /// The same for an effect that sets in at each of `instants` of every run, s.
@@ -140,8 +138,7 @@ impl Hypothesis {
         values: &[f64],
     ) -> Vec<f64> {
         let effects = self.applied(evidence.base(), values);
-        let only = |generator: Generator| generator.hears(self.effect, self.scope);
-        let costs = evidence.onset_costs(&effects, &only, instants);
+        let costs = evidence.onset_costs(&effects, &self.heard(), instants);
         costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
     }
 
@@ -157,11 +154,15 @@ impl Hypothesis {
         self.effect.parameters.iter().zip(values).map(of).sum()
     }
 
+    /// The generators that it can make say something else.
+    fn heard(&self) -> impl Fn(Generator) -> bool {
+        |generator| generator.hears(self.effect, self.scope)
+    }
+
     /// What is left and what one has to believe for it.
     fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
-        let only = |generator: Generator| generator.hears(self.effect, self.scope);
         let effects = self.applied(evidence.base(), values);
-        evidence.cost(Belief { effects: &effects, from_s }, &only) + self.disbelief(values)
+        evidence.cost(Belief { effects: &effects, from_s }, &self.heard()) + self.disbelief(values)
     }
 
     fn weighed(&self, evidence: &Evidence<'_>, from_s: f64, values: Vec<f64>, cost: f64) -> Fit {

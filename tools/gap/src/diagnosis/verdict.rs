@@ -189,17 +189,17 @@ const NINETY: f64 = 1.645;
 /// How much wider an interval is than noise alone makes it, and by what share of an effect's size: laws of
 /// machines differ (six in ten intervals held the truth without).
 const WIDER: [f64; 2] = [2.0, 0.05];
-/// That share for effects whose law remembers what no log tells, and has another form on each make: what holds
-/// an idle wheel comes out 14 % low on one make and 23 % high on another.
-const WIDER_VAGUE: f64 = 0.12;
-/// Those effects.
-const VAGUE: [&str; 2] = ["seal-stiction", "standstill-drag"];
+/// That share for [`REMEMBERING`]: what holds an idle wheel comes out 14 % low on one make and 23 % high on another.
+const WIDER_REMEMBERING: f64 = 0.12;
+/// Effects whose law remembers how the machine came to rest, which is in no log, and has another form on each make.
+pub(super) const REMEMBERING: [&str; 2] = ["seal-stiction", "standstill-drag"];
 
 impl Estimate {
     /// `value` of a parameter of `effect` that noise leaves uncertain by `sigma`.
     #[must_use]
     pub(super) fn new(effect: &Effect, parameter: &Parameter, value: f64, sigma: f64) -> Self {
-        let law = if VAGUE.contains(&effect.name) { WIDER_VAGUE } else { WIDER[1] };
+        let remembers = REMEMBERING.contains(&effect.name);
+        let law = if remembers { WIDER_REMEMBERING } else { WIDER[1] };
         let reach = NINETY * (WIDER[0] * sigma).hypot(law * (value - parameter.neutral));
         let [low, high] = parameter.range;
         let interval = [(value - reach).max(low), (value + reach).min(high)];

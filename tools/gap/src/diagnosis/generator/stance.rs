@@ -163,20 +163,17 @@ fn strain<'a>(
     if most_n.iter().all(|(_, most_n)| *most_n == 0.0) {
         return;
     }
+    let hold = |carriers: &mut PerWheel<Carrier<'a>>, begins_n: &PerWheel<f64>| {
+        Wheel::ALL.into_iter().for_each(|w| carriers[w].seal.begins_n = begins_n[w]);
+    };
     let mut trial = carriers[0].clone();
     let begins_n = strained::begun_n(&most_n, |begins_n| {
-        for w in Wheel::ALL {
-            trial[w].seal.begins_n = begins_n[w];
-        }
+        hold(&mut trial, begins_n);
         let weights = judge(&trial).into_iter().step_by(STANDING).map(|error| error.weight);
         let signals = [Signal::Weight, Signal::WeightX, Signal::WeightY];
         weights.flat_map(|w| [0, 1, 2].map(|k| w[k] / signals[k].floor().sigma)).collect()
     });
-    for own in carriers {
-        for w in Wheel::ALL {
-            own[w].seal.begins_n = begins_n[w];
-        }
-    }
+    carriers.iter_mut().for_each(|carriers| hold(carriers, &begins_n));
 }
 
 /// One instant, with where each wheel is and what it presses on the ground.

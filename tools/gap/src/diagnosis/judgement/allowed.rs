@@ -4,6 +4,7 @@
 use super::super::evidence::{Echo, Left, Uneven};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
+use super::super::verdict::REMEMBERING;
 
 /// Share of a gap that a right cause may leave: laws of one name differ from make to make in their
 /// details.
@@ -43,8 +44,7 @@ struct Vague {
 
 /// The causes that are vague, and why. All other laws have one form: a delay is a delay.
 const VAGUE: [Vague; 7] = [
-    // How the machine came to rest is in no log.
-    Vague { effects: &["seal-stiction", "standstill-drag"], shows: anywhere, share: 0.6 },
+    Vague { effects: &REMEMBERING, shows: anywhere, share: 0.6 },
     // How much oil stood where before an accumulator opened is not known.
     Vague { effects: &["accumulator-gas"], shows: anywhere, share: 0.25 },
     // What load an arm drifts at, and how fast near it, is each make's own.

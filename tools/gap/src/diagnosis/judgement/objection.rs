@@ -23,7 +23,7 @@ const SHIFT: f64 = 4.4;
 /// settled on them.
 const HELD: f64 = 1.5;
 /// How strongly it speaks against a cause that its one number is where its law ends: it would go on. Of right answers
-/// none is there.
+/// none whose number is known is there.
 const AT_ITS_END: f64 = 2.0;
 /// Evidence of the cause from which that counts, nats: what bends to next to nothing bends as far as it can.
 const ENDED_MIN: f64 = 36.0;

@@ -135,7 +135,8 @@ fn text(tiff: &mut Tiff<'_>, tag: Tag) -> Option<String> {
 fn nodata(text: &str) -> Result<f64, String> {
     let text = text.trim_matches(['\0', ' ']);
     text.parse().map_err(|_| {
-        format!("its no-data value `{text}` is no number; `gdal_edit.py -a_nodata -9999`")
+        let shown = text.escape_debug();
+        format!("its no-data value `{shown}` is no number; `gdal_edit.py -a_nodata -9999`")
     })
 }
 
@@ -258,6 +259,7 @@ mod tests {
             (floats(&[PLAN_UNIT, 0, 1, 9003], None), "plan are in EPSG unit 9003", "gdalwarp"),
             (floats(&[HEIGHT_UNIT, 0, 1, 9002], None), "heights are in", "gdalwarp"),
             (floats(&[], Some("none")), "no-data value `none`", "-a_nodata"),
+            (floats(&[], Some("\n9")), "no-data value `\\n9`", "-a_nodata"),
             (write::<colortype::RGB8>(&[0; 18], &[], None), "RGB(8)", "-b 1"),
             (write::<colortype::Gray64>(&[0; 6], &[], None), "64-bit", "-ot Float32"),
             (b"II*\0".to_vec(), "no TIFF that can be read", "gdal_translate"),

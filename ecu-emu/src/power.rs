@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use xt28_machine::SimTime;
 
 /// The machine's battery, mV.
-const NOMINAL_MV: f64 = 24_000.0;
+pub(crate) const NOMINAL_MV: f64 = 24_000.0;
 /// Most that a dip may leave, V.
 const DIP_MAX_V: f64 = 24.0;
 

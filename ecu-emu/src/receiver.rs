@@ -46,6 +46,7 @@ impl Receiver {
             fix_ok: true,
             differential: true,
             carrier: CarrierSolution::Fixed,
+            position_valid: true,
             satellites: SATELLITES,
             position,
             height_msl_m: position.height_m,

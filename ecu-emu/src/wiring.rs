@@ -7,9 +7,7 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::{Actuation, ImuSample, Readings, VehicleState};
 
 use crate::EmulatorConfig;
-
-/// Battery of the machine, mV.
-const SUPPLY_MV: f64 = 24_000.0;
+use crate::power::NOMINAL_MV;
 
 /// What the pendulum-arm ECU's sensors put on its pins.
 pub(crate) fn arm_pins(s: &Readings, sensors: &Calibration) -> ArmPins {
@@ -17,7 +15,7 @@ pub(crate) fn arm_pins(s: &Readings, sensors: &Calibration) -> ArmPins {
         stroke_mv: s.stroke_m.map(|stroke_m| sensors.stroke_mv(stroke_m)),
         pressure_a_mv: s.pressure_a_pa.map(pins::pressure_mv),
         pressure_b_mv: s.pressure_b_pa.map(pins::pressure_mv),
-        supply_mv: SUPPLY_MV,
+        supply_mv: NOMINAL_MV,
     }
 }
 
@@ -29,7 +27,7 @@ pub(crate) fn drive_pins(s: &Readings, sensors: &Calibration) -> DrivePins {
         wheel_hz: s.wheel_speed_rad_s.map(pins::wheel_hz),
         wheel_forward: s.wheel_speed_rad_s.map(|rad_s| rad_s >= 0.0),
         pump_mv: s.pump_pressure_pa.map(pins::pump_mv),
-        supply_mv: SUPPLY_MV,
+        supply_mv: NOMINAL_MV,
     }
 }
 

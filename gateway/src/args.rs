@@ -3,14 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use gateway::Geodetic;
+use gateway::{Fix, Geodetic};
 
 /// Drive an Xt28 over CAN: a policy's actions become frames, under the safety kernel.
 ///
 /// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver where the policy
 /// needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
 /// that time, and SIGUSR1 is then the order to arm again after a safety stop. SIGINT and SIGTERM stop
-/// the machine, go silent, then exit.
+/// the machine, go silent, then exit. SIGUSR2 is the emergency stop: no order arms after it, only a new
+/// run does.
 ///
 /// Exit code: 0 done (or interrupted where there was nothing to be done, as in hold), 1 not done
 /// (goal missed, safety stop, interrupted on the way), 2 usage or I/O.
@@ -34,6 +35,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) machine: Option<PathBuf>,
 
+    /// The worst fix that the machine is driven by
+    #[arg(long, value_name = "FIX", value_enum, default_value_t = LeastFix::Float)]
+    pub(crate) least_fix: LeastFix,
+
+    /// The worst horizontal accuracy, as the receiver estimates it, that the machine is driven by
+    #[arg(long, value_name = "M", value_parser = metres, default_value = "0.5")]
+    pub(crate) least_accuracy: f64,
+
     /// Origin of the local frame: degrees, degrees, metres above the ellipsoid
     #[arg(long, value_name = "LAT,LON,H", value_parser = origin, default_value = "59.8,17.9,20",
           allow_hyphen_values = true)]
@@ -54,6 +63,37 @@ pub(crate) struct Args {
     /// Print the result on stdout as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Kinds of fix, worst first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum LeastFix {
+    /// Satellites alone, metres
+    Single,
+    /// With corrections to the code, some decimetres
+    Differential,
+    /// Carrier phase, decimetres
+    Float,
+    /// Carrier phase with fixed ambiguities, centimetres
+    Fixed,
+}
+
+impl From<LeastFix> for Fix {
+    fn from(fix: LeastFix) -> Self {
+        match fix {
+            LeastFix::Single => Self::Single,
+            LeastFix::Differential => Self::Differential,
+            LeastFix::Float => Self::RtkFloat,
+            LeastFix::Fixed => Self::RtkFixed,
+        }
+    }
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(m) if m > 0.0 && m.is_finite() => Ok(m),
+        _ => Err("give metres above 0".to_owned()),
+    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -90,6 +130,7 @@ mod tests {
         for bad in ["", "59.8,17.9", "91,0,0", "0,181,0", "nan,0,0"] {
             assert!(origin(bad).unwrap_err().contains("59.8,17.9,20"), "{bad}");
         }
+        assert!(metres("0").is_err() && metres("inf").is_err() && metres("0.3").is_ok());
         assert!(seconds("nan").is_err() && seconds("-1").is_err() && seconds("0.5").is_ok());
     }
 }

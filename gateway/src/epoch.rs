@@ -11,7 +11,8 @@ use crate::pose::wrap;
 /// What the receiver says of one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Epoch {
-    /// The antenna, from NAV-HPPOSLLH where there is one, else NAV-PVT.
+    /// The antenna, from NAV-HPPOSLLH where there is one, else NAV-PVT. It means nothing without a fix, and
+    /// there is none where the receiver calls either invalid.
     pub(crate) position: Geodetic,
     /// East, north, up, m/s.
     pub(crate) velocity_m_s: [f64; 3],
@@ -45,6 +46,18 @@ pub enum Fix {
     RtkFloat,
     /// Carrier phase with fixed ambiguities, centimetres and better.
     RtkFixed,
+}
+
+impl core::fmt::Display for Fix {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::None => "no fix",
+            Self::Single => "single",
+            Self::Differential => "differential",
+            Self::RtkFloat => "RTK float",
+            Self::RtkFixed => "RTK fixed",
+        })
+    }
 }
 
 /// Collects the messages of an epoch. They carry its time of week, so it does not matter in which
@@ -106,7 +119,7 @@ impl EpochCollector {
 }
 
 fn epoch(pvt: &NavPvt, fine: Option<&NavHpPosLlh>, relative: &NavRelPosNed) -> Epoch {
-    let fine = fine.filter(|fine| fine.valid);
+    let valid = pvt.position_valid && fine.is_none_or(|fine| fine.valid);
     // The baseline points forward: base antenna behind, rover antenna ahead.
     let heading_rad =
         (relative.heading_valid && relative.fix_ok).then(|| wrap(FRAC_PI_2 - relative.heading_rad));
@@ -115,7 +128,7 @@ fn epoch(pvt: &NavPvt, fine: Option<&NavHpPosLlh>, relative: &NavRelPosNed) -> E
         velocity_m_s: [pvt.velocity_east_m_s, pvt.velocity_north_m_s, -pvt.velocity_down_m_s],
         heading_rad,
         quality: Quality {
-            fix: fix(pvt),
+            fix: if valid { fix(pvt) } else { Fix::None },
             satellites: pvt.satellites,
             accuracy_horizontal_m: fine
                 .map_or(pvt.accuracy_horizontal_m, |fine| fine.accuracy_horizontal_m),
@@ -159,6 +172,7 @@ mod tests {
                 carrier,
                 position: HERE,
                 fix_ok: true,
+                position_valid: true,
                 fix_type: FixType::ThreeD,
                 velocity_down_m_s: 0.5,
                 ..NavPvt::default()
@@ -193,6 +207,27 @@ mod tests {
             assert!((epoch.velocity_m_s[2] + 0.5).abs() < 1e-12);
             assert!((epoch.heading_rad.unwrap() - FRAC_PI_2).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn an_invalid_position_is_no_fix_whichever_message_says_so() {
+        let fix = |change: fn(&mut [Message; 3])| {
+            let mut collector = EpochCollector::default();
+            collector.push(&bytes(&messages(0)));
+            let mut epoch = messages(125);
+            change(&mut epoch);
+            collector.push(&bytes(&epoch)).unwrap().quality.fix
+        };
+        assert_eq!(fix(|_| ()), Fix::RtkFixed);
+        let fine = |epoch: &mut [Message; 3]| {
+            let Message::HpPosLlh(fine) = &mut epoch[1] else { unreachable!() };
+            fine.valid = false;
+        };
+        let coarse = |epoch: &mut [Message; 3]| {
+            let Message::Pvt(pvt) = &mut epoch[0] else { unreachable!() };
+            pvt.position_valid = false;
+        };
+        assert_eq!([fix(fine), fix(coarse)], [Fix::None; 2]);
     }
 
     #[test]

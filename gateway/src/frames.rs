@@ -17,6 +17,12 @@ use crate::epoch::{Fix, Quality};
 const HOLD_MM: f64 = 510.0;
 /// Resolution of a target stroke, mm.
 const STROKE_STEP_MM: f64 = 2.0;
+/// The longest target stroke that the wire can say, m: the next one holds.
+pub(crate) const STROKE_MAX_M: f64 = 0.508;
+/// The largest joint angle that the wire can say, either way, deg.
+pub(crate) const ANGLE_MAX_DEG: f64 = 25.0;
+/// The highest engine speed that the wire can say, rpm.
+const ENGINE_SPEED_MAX_RPM: f64 = 2550.0;
 
 /// Whether frames may move anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +46,7 @@ pub(crate) struct FrameWriter {
 
 impl FrameWriter {
     pub(crate) fn new(engine_speed_rpm: f64) -> Self {
-        Self { engine_speed_rpm, ..Self::default() }
+        Self { engine_speed_rpm: engine_speed_rpm.min(ENGINE_SPEED_MAX_RPM), ..Self::default() }
     }
 
     /// Counters last sent to the arm and the drive ECU, none after silence.
@@ -53,7 +59,8 @@ impl FrameWriter {
         self.sent = None;
     }
 
-    /// The frames that carry `command` to both ECUs.
+    /// The frames that carry `command` to both ECUs: all of them, or none where one has no form on the
+    /// wire.
     pub(crate) fn actuate(
         &mut self,
         command: &Command,
@@ -70,7 +77,8 @@ impl FrameWriter {
         let [fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm] = strokes.map(stroke_mm);
         let arm =
             ArmTarget { fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm, mode, counter: arm_counter };
-        out.push(arm.encode()?);
+        let arm = arm.encode()?;
+        let mut valves = None;
         if let Arms::Valve(openings) = command.arms {
             let [fr_percent, fl_percent, mr_percent, ml_percent, br_percent, bl_percent] =
                 openings.map(|opening| opening * 100.0);
@@ -84,18 +92,21 @@ impl FrameWriter {
                 bl_percent,
                 counter,
             };
-            out.push(valve.encode()?);
+            valves = Some(valve.encode()?);
         }
         let enable = drive == Drive::Enabled;
         let target = DriveTarget {
             throttle_percent: if enable { command.throttle * 100.0 } else { 0.0 },
-            front_angle_deg: hundredths(command.front_angle_rad.to_degrees()),
+            // A joint that stands beyond what the wire can say is told as at its end.
+            front_angle_deg: hundredths(command.front_angle_rad.to_degrees())
+                .clamp(-ANGLE_MAX_DEG, ANGLE_MAX_DEG),
             engine_speed_rpm: self.engine_speed_rpm,
             brake: command.brake,
             enable,
             counter: drive_counter,
         };
-        out.push(target.encode()?);
+        let target = target.encode()?;
+        [Some(arm), valves, Some(target)].into_iter().flatten().for_each(|frame| out.push(frame));
         self.sent = Some((arm_counter, drive_counter));
         Ok(())
     }
@@ -109,7 +120,8 @@ fn hundredths(degrees: f64) -> f64 {
 
 /// A stroke target as the wire has it: rounded to its step, or the value that holds.
 fn stroke_mm(stroke_m: Option<f64>) -> f64 {
-    stroke_m.map_or(HOLD_MM, |m| (m * 1e3 / STROKE_STEP_MM).round() * STROKE_STEP_MM)
+    let step = |m: f64| (m.min(STROKE_MAX_M) * 1e3 / STROKE_STEP_MM).round() * STROKE_STEP_MM;
+    stroke_m.map_or(HOLD_MM, step)
 }
 
 /// The log's record of a fix: position of the antenna, not of the front axle, and without regard to

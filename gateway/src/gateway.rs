@@ -16,10 +16,8 @@ use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pac
 /// After a stop, neutral frames go on for this long, so that the machine is brought to rest and not
 /// left to the ECUs' deadlines; then silence.
 const NEUTRAL_TICKS: u32 = 150;
-/// Within the neutral frames, the parking brake waits for standstill or this many ticks.
-const BRAKE_BY_FORCE_TICKS: u32 = 100;
-/// Slower than this the brake may close, m/s (assumed).
-const STANDING_M_S: f64 = 0.1;
+/// One period, ns.
+const TICK_NS: u64 = 10_000_000;
 
 /// The gateway, to be fed frames, receiver bytes and ticks of 10 ms.
 pub struct Gateway {
@@ -96,7 +94,8 @@ impl Gateway {
     /// Bytes from the receiver, in any portions.
     pub fn on_gnss(&mut self, now: SimTime, bytes: &[u8]) {
         if let Some(epoch) = self.epochs.push(bytes) {
-            self.fresh = Some((now, epoch));
+            let overtaken = self.fresh.replace((now, epoch));
+            self.tally.fixes_overtaken += u64::from(overtaken.is_some());
         }
     }
 
@@ -108,13 +107,14 @@ impl Gateway {
         }
     }
 
-    /// An order to the safety kernel, carried out at the next tick.
-    pub const fn order(&mut self, order: Order) {
-        // An emergency stop waiting to be carried out is not overtaken.
-        if !matches!(self.order, Order::EmergencyStop) {
+    /// An order to the safety kernel, carried out at the next tick. Of several that wait for one tick the
+    /// safest is carried out: emergency stop, disarm, release, arm. After the first two the gateway does
+    /// not arm by itself any more.
+    pub fn order(&mut self, order: Order) {
+        if precedence(order) >= precedence(self.order) {
             self.order = order;
         }
-        self.auto_arm = false;
+        self.auto_arm &= !matches!(order, Order::EmergencyStop | Order::Disarm);
     }
 
     /// One period of 10 ms: at most one round of frames is added to `out`.
@@ -195,10 +195,11 @@ impl Gateway {
     fn locate(&mut self, at: SimTime, epoch: &Epoch) -> Option<Located> {
         let antenna = self.frame.to_local(epoch.position);
         self.quality = Some(epoch.quality);
-        let heading_rad = epoch.heading_rad?;
-        if epoch.quality.fix == Fix::None {
+        if !self.config.may_drive_by(&epoch.quality) {
+            self.tally.fixes_refused += 1;
             return None;
         }
+        let heading_rad = epoch.heading_rad?;
         let attitude = self.sensors.attitude();
         let pose = Pose::under_antenna(antenna, self.antenna_m, heading_rad, attitude);
         let located = Located { at, pose, velocity_m_s: epoch.velocity_m_s };
@@ -252,7 +253,7 @@ impl Gateway {
         Input {
             order,
             request: self.request,
-            measured: self.sensors.measured(),
+            measured: self.sensors.measured(self.wheel_radius_m),
             arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
             drive: self.drive_ecu.link(sent.map(|(_, drive)| drive)),
             stamps: Stamps {
@@ -296,13 +297,14 @@ impl Gateway {
         if !shaking_hands {
             self.neutral_left -= 1;
         }
-        let since_stop = NEUTRAL_TICKS - self.neutral_left;
-        let speed_m_s = self.sensors.wheel_speed_rad_s() * self.wheel_radius_m;
-        let standing = speed_m_s.abs() < STANDING_M_S;
-        let joint_rad = self.sensors.measured().front_angle_rad;
+        let since_stop_ns = u64::from(NEUTRAL_TICKS - self.neutral_left) * TICK_NS;
+        let measured = self.sensors.measured(self.wheel_radius_m);
+        let limits = &self.config.limits;
+        let standing = measured.speed_m_s.abs() <= limits.brake_speed_m_s;
         // Without a joint reading the middle is as good as any: neutral frames steer nothing.
+        let joint_rad = measured.front_angle_rad;
         let rest = Command::rest(if joint_rad.is_finite() { joint_rad } else { 0.0 });
-        let brake = standing || since_stop > BRAKE_BY_FORCE_TICKS;
+        let brake = standing || since_stop_ns > limits.brake_wait_ns;
         self.writer.actuate(&Command { brake, ..rest }, Drive::Neutral, out)
     }
 
@@ -311,7 +313,19 @@ impl Gateway {
     }
 }
 
-/// A fix in the log: position and velocity where there is a fix, its quality always.
+/// Which of two orders for one tick is carried out.
+const fn precedence(order: Order) -> u8 {
+    match order {
+        Order::None => 0,
+        Order::Arm => 1,
+        Order::Release => 2,
+        Order::Disarm => 3,
+        Order::EmergencyStop => 4,
+    }
+}
+
+/// A fix in the log: its position where there is one, its velocity where there is a heading too (they
+/// share a frame), its quality always.
 fn record(
     epoch: &Epoch,
     antenna: Enu,

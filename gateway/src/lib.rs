@@ -7,7 +7,7 @@
 //! | Module | What |
 //! |---|---|
 //! | [`Observation`] | sensors averaged between fixes, pose of the front axle |
-//! | [`policy`] | the trait, and the policies that need no file |
+//! | [`policy`] | the trait, and the policies that need no network |
 //! | [`Action`] | eight numbers in -1..1 and what they mean |
 //! | `xt28_safety` | what may leave |
 #![forbid(unsafe_code)]

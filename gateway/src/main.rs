@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
 
 mod args;
+mod departures;
 mod freshness;
 mod lateness;
 mod problem;
@@ -24,7 +25,13 @@ fn main() -> ExitCode {
             if args.json {
                 println!("{}", report::json(&finished));
             }
-            ExitCode::from(u8::from(report::shortfall(&finished).is_some()))
+            match &finished.broke {
+                Some(problem) => {
+                    eprintln!("gateway: {problem}");
+                    ExitCode::from(2)
+                }
+                None => ExitCode::from(u8::from(report::shortfall(&finished).is_some())),
+            }
         }
         Err(problem) => {
             eprintln!("gateway: {problem}");

@@ -1,4 +1,4 @@
-//! Where demands come from: one trait, and the policies that need no file.
+//! Where demands come from: one trait, and the policies that need no network.
 
 mod goto;
 mod hold;

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Reason, Status, policy};
-use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 
@@ -24,6 +24,10 @@ pub(crate) struct Finished {
     pub(crate) lateness: Lateness,
     /// Received frames that the kernel dropped before anyone read them; none where it does not say.
     pub(crate) frames_lost: Option<u32>,
+    /// Frames of ours that the bus never took.
+    pub(crate) frames_discarded: u64,
+    /// What went wrong with the host and ended the run.
+    pub(crate) broke: Option<Problem>,
     pub(crate) interrupted: bool,
     /// What last stood against arming, if it never came to that.
     pub(crate) never_armed: Option<Reason>,
@@ -45,10 +49,17 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         None if policy.pace() == Pace::Fix => return Err(Problem::NoGnss),
         None => None,
     };
-    let config = GatewayConfig { origin: args.origin, ..GatewayConfig::new(&machine) };
+    let config = GatewayConfig {
+        origin: args.origin,
+        fix_least: args.least_fix.into(),
+        accuracy_max_m: args.least_accuracy,
+        ..GatewayConfig::new(&machine)
+    };
     let interrupt = watch_signals().map_err(Problem::Signals)?;
-    let arm = Arc::new(AtomicBool::new(false));
-    signal_hook::flag::register(SIGUSR1, Arc::clone(&arm)).map_err(Problem::Signals)?;
+    let [arm, halt] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+    for (signal, flag) in [(SIGUSR1, &arm), (SIGUSR2, &halt)] {
+        signal_hook::flag::register(signal, Arc::clone(flag)).map_err(Problem::Signals)?;
+    }
     let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
     let gateway = Gateway::new(&machine, config, policy);
     let run = Run {
@@ -57,12 +68,13 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         port,
         interrupt,
         arm,
+        halt,
         start: Instant::now(),
         freshness: Freshness::default(),
         ending: false,
         never_armed: None,
     };
-    run.until_done(args)
+    Ok(run.until_done(args))
 }
 
 /// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting.
@@ -82,6 +94,8 @@ struct Run {
     interrupt: Arc<AtomicBool>,
     /// Raised by SIGUSR1: the order to arm again, after a stop that somebody has looked at.
     arm: Arc<AtomicBool>,
+    /// Raised by SIGUSR2: the emergency stop, which only a new run releases.
+    halt: Arc<AtomicBool>,
     start: Instant,
     freshness: Freshness,
     /// The order to disarm was given.
@@ -90,8 +104,28 @@ struct Run {
 }
 
 impl Run {
-    fn until_done(mut self, args: &Args) -> Result<Finished, Problem> {
+    fn until_done(mut self, args: &Args) -> Finished {
         let mut lateness = Lateness::new();
+        let broke = self.go_on(args, &mut lateness).err();
+        let status = self.gateway.status();
+        let interrupted = self.interrupt.load(Ordering::Relaxed);
+        let seconds = self.start.elapsed().as_secs_f64();
+        let (frames_lost, frames_discarded) = (self.wire.lost(), self.wire.discarded());
+        let closed = self.wire.close().err();
+        Finished {
+            status,
+            lateness,
+            frames_lost,
+            frames_discarded,
+            broke: broke.or(closed),
+            interrupted,
+            never_armed: self.never_armed,
+            seconds,
+        }
+    }
+
+    /// Ticks until the run is over and the machine left in peace.
+    fn go_on(&mut self, args: &Args, lateness: &mut Lateness) -> Result<(), Problem> {
         let mut out = Outbox::with_capacity(8);
         let mut bytes = [0; 4096];
         let mut told = Phase::Disarmed;
@@ -105,7 +139,7 @@ impl Run {
             tell(now, &mut told, &self.gateway);
             self.end_if_due(now, args);
             if self.ending && self.gateway.is_silent() {
-                break;
+                return Ok(());
             }
             due += TICK;
             // The schedule is absolute; a tick whose successor is due already is not made up for.
@@ -115,13 +149,6 @@ impl Run {
                 lateness.missed += 1;
             }
         }
-        let status = self.gateway.status();
-        let interrupted = self.interrupt.load(Ordering::Relaxed);
-        let seconds = self.start.elapsed().as_secs_f64();
-        let frames_lost = self.wire.lost();
-        self.wire.close()?;
-        let never_armed = self.never_armed;
-        Ok(Finished { status, lateness, frames_lost, interrupted, never_armed, seconds })
     }
 
     /// Takes frames until `due`, asleep in between.
@@ -139,7 +166,7 @@ impl Run {
             if left.is_zero() {
                 return Ok(());
             }
-            self.wire.wait(left)?;
+            self.wire.wait(left, || start.elapsed())?;
         }
     }
 
@@ -160,12 +187,15 @@ impl Run {
         if self.arm.swap(false, Ordering::Relaxed) && !self.ending {
             self.gateway.order(Order::Arm);
         }
+        if self.halt.load(Ordering::Relaxed) {
+            self.gateway.order(Order::EmergencyStop);
+        }
         out.clear();
         // Receiver bytes and frames came in up to here.
         let now = sim_time(now.max(self.start.elapsed()));
-        let ran = !matches!(self.gateway.status().phase, Phase::Blocked(_));
+        let ran = matches!(self.gateway.status().phase, Phase::Armed);
         self.gateway.tick(now, out);
-        if ran && matches!(self.gateway.status().phase, Phase::Blocked(_)) {
+        if ran && !matches!(self.gateway.status().phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
             self.wire.discard_waiting();
         }

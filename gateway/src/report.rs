@@ -8,6 +8,9 @@ use crate::realtime::Finished;
 /// Why the run did not do what it was for; `None` when it did.
 pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
     let status = &finished.status;
+    if let Some(problem) = &finished.broke {
+        return Some(problem.to_string());
+    }
     if let Some((at, reason)) = status.first_hazard {
         return Some(format!("safety stop at {at}: {reason}"));
     }
@@ -24,7 +27,7 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
 
 /// Two or three lines on stderr.
 pub(crate) fn tell(finished: &Finished) {
-    let Finished { status, lateness, frames_lost, seconds, .. } = finished;
+    let Finished { status, lateness, frames_lost, frames_discarded, seconds, .. } = finished;
     match shortfall(finished) {
         None => eprintln!("done in {seconds:.1} s"),
         Some(why) => eprintln!("not done after {seconds:.1} s: {why}"),
@@ -45,11 +48,22 @@ pub(crate) fn tell(finished: &Finished) {
     if let Some(frames @ 1..) = frames_lost {
         eprintln!("{frames} frames came and were lost: nobody read them in time");
     }
+    if let frames @ 1.. = *frames_discarded {
+        eprintln!(
+            "{frames} frames of ours never left: the bus took none, or they were too old by then"
+        );
+    }
+    if let (fixes @ 1.., Some(quality)) = (status.counts.fixes_refused, status.quality) {
+        let (fix, accuracy_m) = (quality.fix, quality.accuracy_horizontal_m);
+        eprintln!(
+            "{fixes} fixes were not good enough to drive by; the last one: {fix}, {accuracy_m:.2} m"
+        );
+    }
 }
 
 /// The same as JSON.
 pub(crate) fn json(finished: &Finished) -> Value {
-    let Finished { status, lateness, frames_lost, interrupted, seconds, .. } = finished;
+    let Finished { status, lateness, interrupted, seconds, .. } = finished;
     let Status { counts, .. } = status;
     json!({
         "pass": shortfall(finished).is_none(),
@@ -68,8 +82,11 @@ pub(crate) fn json(finished: &Finished) -> Value {
         "lateness_ms": { "p99_below": lateness.p99_ms(), "worst": lateness.worst_ms() },
         "ticks": { "run": lateness.ticks(), "missed": lateness.missed,
                    "allowed": counts.allowed, "clamped": counts.clamped },
-        "fixes": { "used": counts.fixes, "incomplete": counts.fixes_incomplete },
+        "fixes": { "used": counts.fixes, "refused": counts.fixes_refused,
+                   "overtaken": counts.fixes_overtaken, "incomplete": counts.fixes_incomplete },
         "faults": { "gnss_stream": counts.gnss_faults, "frames_refused": counts.frames_refused,
-                    "frames_unsent": counts.frames_unsent, "frames_lost": frames_lost },
+                    "frames_unsent": counts.frames_unsent,
+                    "frames_discarded": finished.frames_discarded,
+                    "frames_lost": finished.frames_lost },
     })
 }

@@ -125,20 +125,16 @@ impl Sensors {
         if roll_rad.is_nan() { Attitude::default() } else { Attitude { roll_rad, pitch_rad } }
     }
 
-    /// The newest values, for the safety kernel.
-    pub(crate) fn measured(&self) -> Measured {
+    /// The newest values, for the safety kernel, with the speed of wheels of this radius.
+    pub(crate) fn measured(&self, wheel_radius_m: f64) -> Measured {
         let [roll_rad, pitch_rad] = self.attitude_rad.last();
         Measured {
             stroke_m: six(self.stroke_front_m.last(), self.stroke_rest_m.last()).0,
             front_angle_rad: self.joint_rad.last()[0],
+            speed_m_s: PerWheel(self.wheel_rad_s.last()).mean() * wheel_radius_m,
             roll_rad,
             pitch_rad,
         }
-    }
-
-    /// Ground speed by the mean of the wheels just now, rad/s; NaN before the first frame.
-    pub(crate) fn wheel_speed_rad_s(&self) -> f64 {
-        PerWheel(self.wheel_rad_s.last()).mean()
     }
 
     /// When the oldest of the 100 Hz sensors spoke last; `None` until each has.

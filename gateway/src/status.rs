@@ -41,6 +41,10 @@ pub struct Tally {
     pub clamped: u64,
     /// Fixes used.
     pub fixes: u64,
+    /// Epochs without a fix, or whose fix is not good enough to drive by.
+    pub fixes_refused: u64,
+    /// Epochs that a newer one of the same tick replaced.
+    pub fixes_overtaken: u64,
     /// Epochs that were never complete.
     pub fixes_incomplete: u64,
     /// Faults in the receiver's stream: checksum, length, version.

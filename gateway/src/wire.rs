@@ -1,6 +1,7 @@
 //! The CAN interface of a run, with the log of all that passes it.
 //!
-//! The log goes by one clock, the run's own, which does not step. Received frames bear the kernel's
+//! The log has what was on the bus: a frame of ours when the kernel takes it, and none that it never took.
+//! It goes by one clock, the run's own, which does not step. Received frames bear the kernel's
 //! wall-clock stamp; what counts of it is how long ago that was when the frame was taken.
 
 use std::fs::File;
@@ -14,16 +15,23 @@ use xt28_bus::{Bus, BusState, SocketCan};
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
+use crate::departures::Departures;
 use crate::problem::Problem;
 
 /// How much longer than since the last look a frame seems to have waited, by the wall clock's pace.
 const SLACK: Duration = Duration::from_millis(10);
+/// How long is slept at most while frames wait for the kernel.
+const RETRY_AFTER: Duration = Duration::from_millis(1);
 
 /// An interface, recorded or not.
 pub(crate) struct Wire {
     socket: SocketCan,
     start: SystemTime,
     log: Option<Writer<BufWriter<File>>>,
+    departures: Departures,
+    /// Frames that had left when the queue was found full to the brim: until another one leaves, the bus
+    /// carries nothing.
+    stuck_at: Option<u64>,
 }
 
 impl Wire {
@@ -43,12 +51,33 @@ impl Wire {
                 Some(Writer::new(BufWriter::new(file), interface).starting_at(epoch))
             }
         };
-        Ok(Self { socket, start, log })
+        Ok(Self { socket, start, log, departures: Departures::default(), stuck_at: None })
     }
 
+    /// Gives a frame to the kernel. A bus that takes none is no fault of the host: its frames are thrown
+    /// away and counted, and [`Wire::is_well`] says so.
     pub(crate) fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Problem> {
-        self.socket.send(now, frame)?;
-        self.log(now, frame)
+        if self.stuck_at.is_some() {
+            // One frame at a time asks whether it takes any again.
+            self.socket.discard_backlog();
+        }
+        match self.socket.send(now, frame) {
+            Ok(()) => self.departures.add(frame),
+            Err(SocketError::BacklogFull { .. }) => {
+                self.stuck_at = Some(self.socket.counters().sent);
+                self.socket.discard_backlog();
+            }
+            Err(error) => return Err(error.into()),
+        }
+        self.settle(now)
+    }
+
+    /// Logs what has left by `now`.
+    fn settle(&mut self, now: SimTime) -> Result<(), Problem> {
+        let left = self.socket.counters().sent;
+        self.stuck_at = self.stuck_at.filter(|at| *at == left);
+        let gone = self.departures.settle(left, self.socket.backlog());
+        gone.iter().try_for_each(|frame| self.log(now, frame))
     }
 
     /// The next frame; `since_start` is the run's clock, and `emptied` when no frame was left by it.
@@ -66,9 +95,15 @@ impl Wire {
         Ok(Some(received.frame))
     }
 
-    /// Sleeps until a frame is there or `timeout` is over.
-    pub(crate) fn wait(&mut self, timeout: Duration) -> Result<bool, SocketError> {
-        self.socket.wait(timeout)
+    /// Sleeps until a frame is there or `timeout` is over, or less while frames of ours wait.
+    pub(crate) fn wait(
+        &mut self,
+        timeout: Duration,
+        since_start: impl Fn() -> Duration,
+    ) -> Result<(), Problem> {
+        let most = if self.departures.wait() { RETRY_AFTER } else { timeout };
+        self.socket.wait(timeout.min(most))?;
+        self.settle(SimTime::ZERO + since_start())
     }
 
     /// Throws away what the kernel has not taken yet.
@@ -76,13 +111,20 @@ impl Wire {
         self.socket.discard_backlog();
     }
 
+    /// Frames of ours that were thrown away: the bus was off or took none, or they were too old.
+    pub(crate) fn discarded(&self) -> u64 {
+        let counters = self.socket.counters();
+        counters.discarded + counters.refused
+    }
+
     /// Received frames that the kernel dropped because nobody read them in time; none where it does not say.
     pub(crate) fn lost(&self) -> Option<u32> {
         self.socket.receive_drops()
     }
 
+    /// Whether the bus carries frames: the controller is not off it, and some leave.
     pub(crate) fn is_well(&self) -> bool {
-        self.socket.state() != BusState::BusOff
+        self.socket.state() != BusState::BusOff && self.stuck_at.is_none()
     }
 
     /// Writes out the log.

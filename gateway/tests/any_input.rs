@@ -11,6 +11,7 @@ use xt28_dbc::messages::{
 };
 use xt28_dbc::{CanId, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
+use xt28_safety::Limits;
 
 #[derive(Clone, Debug)]
 enum In {
@@ -95,7 +96,7 @@ proptest! {
         noise in ".{0,40}",
     ) {
         for text in [text.clone(), format!("{text}{noise}")] {
-            if let Err(error) = Script::parse(&text, Path::new("any.toml")) {
+            if let Err(error) = Script::parse(&text, Path::new("any.toml"), &Limits::XT28) {
                 prop_assert_eq!(error.to_string().lines().count(), 1);
             }
         }

@@ -12,6 +12,7 @@ use xt28_dbc::messages::{
     ArmTarget, ArmTargetMode, ArmValve, DriveTarget, GnssPosition, GnssQuality, GnssVelocity,
 };
 use xt28_machine::Machine;
+use xt28_safety::Limits;
 
 const LATE: Variant =
     Variant { throttle_delay_s: 0.2, steering_delay_s: 0.2, speed_factor: 1.0, noise: true };
@@ -27,7 +28,7 @@ fn goto(east_m: f64, north_m: f64, heading_deg: f64) -> Box<dyn Policy> {
 }
 
 fn script(text: &str) -> Box<dyn Policy> {
-    Box::new(Script::parse(text, Path::new("test.toml")).unwrap())
+    Box::new(Script::parse(text, Path::new("test.toml"), &Limits::XT28).unwrap())
 }
 
 fn armed(policy: Box<dyn Policy>) -> Bench {
@@ -107,6 +108,7 @@ fn every_failure_stops_the_machine_then_falls_silent() {
         (Faults { drive_ecu_deaf: true, ..fine }, 0.16),
         (Faults { drive_ecu_safe_stop: true, ..fine }, 0.02),
         (Faults { gnss_silent: true, ..fine }, 0.52),
+        (Faults { gnss_code_only: true, ..fine }, 0.52),
         (Faults { imu_roll_deg: Some(18.5), ..fine }, 0.02),
         // 0.2 s until loads count as lost, three fixes without an observation, and 25 ms on the way.
         (Faults { loads_silent: true, ..fine }, 0.7),
@@ -173,6 +175,66 @@ fn an_order_to_disarm_ends_in_silence_and_one_to_arm_starts_again() {
     assert!(bench.sent_of(ArmTarget::ID).is_none());
     bench.gateway.order(Order::Arm);
     bench.run_until(6.0, |status| status.phase == Phase::Armed);
+}
+
+/// Of orders for one tick the safest is carried out, and one to arm that comes too early does no harm.
+#[test]
+fn an_order_to_disarm_is_not_overtaken_by_one_to_arm() {
+    let mut bench = Bench::new(gateway(Box::new(Hold), true), LATE);
+    bench.gateway.order(Order::Arm);
+    bench.run_until(2.0, |status| status.phase == Phase::Armed);
+    bench.gateway.order(Order::Disarm);
+    bench.gateway.order(Order::Arm);
+    bench.tick();
+    assert_eq!(bench.gateway.status().phase, Phase::Disarmed);
+}
+
+#[test]
+fn an_emergency_stop_is_released_by_no_order_to_arm() {
+    let mut bench = armed(Box::new(Hold));
+    bench.gateway.order(Order::EmergencyStop);
+    for _ in 0..300 {
+        bench.gateway.order(Order::Arm);
+        bench.tick();
+        assert!(bench.drive_target().is_none_or(|target| !target.enable));
+    }
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::EmergencyStop));
+    bench.gateway.order(Order::Release);
+    bench.tick();
+    bench.gateway.order(Order::Arm);
+    bench.run_until(6.0, |status| status.phase == Phase::Armed);
+}
+
+#[test]
+fn a_brake_asked_for_at_speed_closes_when_the_machine_stands() {
+    let text = "[[command]]\nat_s = 0\nthrottle_percent = 50\n\
+                [[command]]\nat_s = 6\nthrottle_percent = 0\nbrake = true\n\
+                [[command]]\nat_s = 9\n";
+    let mut bench = armed(script(text));
+    let mut fastest_m_s = 0.0_f64;
+    while !bench.drive_target().unwrap().brake {
+        bench.tick();
+        fastest_m_s = fastest_m_s.max(bench.vehicle.speed_m_s);
+        assert!(bench.now.as_secs_f64() < 12.0);
+    }
+    assert!(fastest_m_s > 0.7, "{fastest_m_s}");
+    assert!(bench.vehicle.speed_m_s < 0.15, "{}", bench.vehicle.speed_m_s);
+}
+
+#[test]
+fn a_machine_that_gets_no_further_gives_up_and_says_so() {
+    let mut bench = armed(goto(25.0, 0.0, 0.0));
+    while bench.vehicle.pose.east_m < 5.0 {
+        bench.tick();
+    }
+    bench.faults.wheels_held = true;
+    let from_s = bench.now.as_secs_f64();
+    let status = bench.run_until(40.0, |status| status.outcome != Outcome::Running);
+    let Outcome::Failed(why) = status.outcome else { panic!("{:?}", status.outcome) };
+    assert!(why.contains("no progress") && why.contains("m along the path"), "{why}");
+    assert!((9.0..12.0).contains(&(bench.now.as_secs_f64() - from_s)));
+    bench.tick();
+    assert!(bench.drive_target().is_some_and(|target| target.throttle_percent == 0.0));
 }
 
 #[test]

@@ -28,6 +28,7 @@ pub const BUILTIN: &[(&str, &str)] = texts!(
     "bumpy-field-locked",
     "kerb",
     "command-loss",
+    "emergency-stop",
     "brown-out",
     "reboot",
     "broken-wire",

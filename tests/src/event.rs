@@ -42,6 +42,9 @@ pub enum Node {
 pub enum GatewayOrder {
     /// To begin the handshake.
     Arm,
+    /// To stop, and to arm no more.
+    #[serde(rename = "emergency-stop")]
+    EmergencyStop,
 }
 
 /// The keys of an event.
@@ -87,6 +90,7 @@ impl fmt::Display for Incident {
             Self::Kill(Node::Gateway) => f.write_str("gateway dies"),
             Self::Kill(Node::Emulator) => f.write_str("emulator dies"),
             Self::Order(GatewayOrder::Arm) => f.write_str("order to arm"),
+            Self::Order(GatewayOrder::EmergencyStop) => f.write_str("emergency stop"),
             Self::Power(event) => {
                 f.write_str(match event.ecu {
                     Some(EcuName::Sms) => "SMS ",
@@ -115,6 +119,8 @@ mod tests {
         let said = |text: &str| parse(text).map(|event| event.what.to_string());
         assert_eq!(said("at_s = 1\nkill = \"gateway\"").unwrap(), "gateway dies");
         assert_eq!(said("at_s = 1\norder = \"arm\"").unwrap(), "order to arm");
+        let halt = "at_s = 1\norder = \"emergency-stop\"";
+        assert_eq!(said(halt).unwrap(), "emergency stop");
         let dip = "at_s = 1\nkind = \"brown-out\"\necu = \"SMS\"\nto_v = 5\nfor_s = 0.2";
         assert_eq!(said(dip).unwrap(), "SMS browned out");
         assert_eq!(said("at_s = 1\nkind = \"reboot\"").unwrap(), "both ECUs reset");

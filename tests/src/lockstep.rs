@@ -176,9 +176,12 @@ impl<W: Write> Lockstep<W> {
                     self.driven = account(self.gateway.take().as_ref());
                 }
                 Incident::Kill(Node::Emulator) => self.emulator = None,
-                Incident::Order(GatewayOrder::Arm) => {
+                Incident::Order(order) => {
                     if let Some((_, gateway)) = &mut self.gateway {
-                        gateway.order(Order::Arm);
+                        gateway.order(match order {
+                            GatewayOrder::Arm => Order::Arm,
+                            GatewayOrder::EmergencyStop => Order::EmergencyStop,
+                        });
                     }
                 }
                 // The emulator has it from its configuration.

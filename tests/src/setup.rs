@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ecu_emu::UnheardEffect;
+use gateway::GatewayConfig;
 use gateway::policy::{self, Policy, SpecError};
 use xt28_machine::Machine;
 use xt28_sim::Solver;
@@ -69,7 +70,9 @@ impl Setup {
     pub fn policy(&self) -> Result<Box<dyn Policy>, SpecError> {
         match &self.scenario.script {
             Some(Script { path, text }) => {
-                Ok(Box::new(policy::Script::parse(text, path).map_err(SpecError::from)?))
+                let limits = GatewayConfig::new(&self.machine).limits;
+                let script = policy::Script::parse(text, path, &limits);
+                Ok(Box::new(script.map_err(SpecError::from)?))
             }
             None => policy::from_spec(&self.scenario.policy, &self.machine),
         }

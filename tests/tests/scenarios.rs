@@ -60,6 +60,7 @@ scenarios! {
     bumpy_field_locked: "bumpy-field-locked",
     kerb: "kerb",
     command_loss: "command-loss",
+    emergency_stop: "emergency-stop",
     brown_out: "brown-out",
     reboot: "reboot",
     broken_wire: "broken-wire",

@@ -87,7 +87,7 @@ struct DriveDemand {
 
 /// The transmission and steering ECU, profile of the paper.
 ///
-/// A lost command takes the throttle to zero at once, holds the joints, and applies the parking
+/// A lost command takes the throttle's demand to zero at once (behind its lag), holds the joints, and applies the parking
 /// brake when the machine stands, or after 5 s.
 #[derive(Clone, Debug)]
 pub struct DriveEcu {

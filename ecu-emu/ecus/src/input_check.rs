@@ -9,7 +9,8 @@ use xt28_machine::SimTime;
 use crate::diagnostics::trouble_code::Fmi;
 use crate::life::Health;
 
-/// Out of this window an input is short or open, mV (facts 3.2).
+/// Out of this window an input is short or open, mV (facts 3.2; the strokes FR and FL, from 450 mV on
+/// there, are watched like the others: assumed).
 const WINDOW_MV: RangeInclusive<f64> = 200.0..=4800.0;
 /// Where an input without a sensor is pulled to, mV: the sensors' supply, within its tolerance
 /// (assumed). What is above hangs on the battery.

@@ -1,7 +1,8 @@
 //! What is on an ECU's pins, both ways: SI to signal for the harness, signal to SI for the ECU.
 //!
 //! Sensor outputs are clamped to 300..4700 mV, inside the window of the input diagnosis (200..4800
-//! mV, facts 3.2): a sensor that saturates is not a broken wire. A voltage or current that is not a
+//! mV, facts 3.2): a sensor that saturates is not a broken wire. (The firmware of 2016 wants 450 mV of the
+//! strokes FR and FL: there a rod some 6 mm below its stop is one.) A voltage or current that is not a
 //! number reads as the lower end of its range, so nothing behind the pins ever sees NaN.
 
 mod calibration;

@@ -12,7 +12,7 @@ pub struct Command {
     pub front_angle_rad: f64,
     /// What the six arms are to do.
     pub arms: Arms,
-    /// Parking brake on. Excludes throttle.
+    /// Parking brake on. Excludes throttle, also while it waits for the machine to stand.
     pub brake: bool,
 }
 

@@ -44,6 +44,8 @@ pub struct Measured {
     pub stroke_m: [f64; WHEELS],
     /// Front joint, rad, left > 0.
     pub front_angle_rad: f64,
+    /// Ground speed by the wheels, m/s, forward > 0.
+    pub speed_m_s: f64,
     /// Roll, rad, right side high > 0.
     pub roll_rad: f64,
     /// Pitch, rad, nose up > 0.
@@ -55,6 +57,7 @@ impl Measured {
     pub const UNKNOWN: Self = Self {
         stroke_m: [f64::NAN; WHEELS],
         front_angle_rad: f64::NAN,
+        speed_m_s: f64::NAN,
         roll_rad: f64::NAN,
         pitch_rad: f64::NAN,
     };
@@ -63,7 +66,9 @@ impl Measured {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.stroke_m.iter().all(|s| s.is_finite())
-            && [self.front_angle_rad, self.roll_rad, self.pitch_rad].iter().all(|x| x.is_finite())
+            && [self.front_angle_rad, self.speed_m_s, self.roll_rad, self.pitch_rad]
+                .iter()
+                .all(|x| x.is_finite())
     }
 }
 

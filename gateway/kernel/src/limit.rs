@@ -1,20 +1,21 @@
 //! Holding one request to the limits: absolute, rate and distance from the measured value.
 
-use crate::{Arms, Clamps, Command, Limits, Measured, WHEELS};
+use crate::{Arms, Clamps, Command, Limits, Measured, State, WHEELS};
 
 /// An arm this close to an end of its range is not driven further by valve, m (assumed: two steps
 /// of the command frame).
 const END_MARGIN_M: f64 = 0.004;
 
-/// `request` held to `limits`, coming from `last` over `dt_s`, and what was changed.
+/// `request` held to `limits`, coming from the state's last command over `dt_s`, and what was changed.
 /// All numbers must be finite.
 pub(crate) fn hold(
     limits: &Limits,
     request: &Command,
-    last: &Command,
+    state: &State,
     measured: &Measured,
     dt_s: f64,
 ) -> (Command, Clamps) {
+    let last = &state.last;
     let throttle = throttle(limits, request, last.throttle, dt_s);
     let angle = Channel {
         low: -limits.angle_max_rad,
@@ -25,12 +26,23 @@ pub(crate) fn hold(
     let front_angle_rad =
         angle.hold(request.front_angle_rad, last.front_angle_rad, measured.front_angle_rad);
     let (arms, arms_clamped) = arms(limits, request, last, measured, dt_s);
+    let brake = request.brake && brake_may_close(limits, state, measured);
     let clamps = Clamps {
+        brake: brake != request.brake,
         throttle: differs(throttle, request.throttle),
         steering: differs(front_angle_rad, request.front_angle_rad),
         arms: arms_clamped,
     };
-    (Command { throttle, front_angle_rad, arms, brake: request.brake }, clamps)
+    (Command { throttle, front_angle_rad, arms, brake }, clamps)
+}
+
+/// A brake that closes on turning wheels locks them: it waits for the machine to stand, but not for ever,
+/// as a machine that rolls on with its throttle at zero needs it most. Once closed it stays closed.
+fn brake_may_close(limits: &Limits, state: &State, measured: &Measured) -> bool {
+    let waited_ns = state.braking_since_ns.map_or(0, |since| state.last_ns.saturating_sub(since));
+    state.last.brake
+        || libm::fabs(measured.speed_m_s) <= limits.brake_speed_m_s
+        || waited_ns >= limits.brake_wait_ns
 }
 
 /// Free to fall towards zero, slow to grow; a change of direction passes zero.
@@ -110,11 +122,12 @@ struct Channel {
 }
 
 impl Channel {
-    /// The absolute range comes last: whatever was measured, it holds.
+    /// The rate comes after the closeness and the absolute range last: where a measured value leaps, as
+    /// with a broken wire, the target follows it no faster than ever, and stays in its range.
     fn hold(&self, wanted: f64, from: f64, measured: f64) -> f64 {
-        let near = bound(wanted, from - self.step, from + self.step);
-        let close = bound(near, measured - self.error, measured + self.error);
-        bound(close, self.low, self.high)
+        let close = bound(wanted, measured - self.error, measured + self.error);
+        let near = bound(close, from - self.step, from + self.step);
+        bound(near, self.low, self.high)
     }
 }
 

@@ -28,6 +28,8 @@ pub struct State {
     /// The last command let through; what rates are relative to.
     pub(crate) last: Command,
     pub(crate) last_ns: u64,
+    /// Since when the brake has been asked for, ns; `None` while it is not.
+    pub(crate) braking_since_ns: Option<u64>,
     /// When both ECUs last were in step, ns.
     pub(crate) acknowledged_ns: u64,
 }
@@ -36,7 +38,13 @@ impl State {
     /// Disarmed, before the first step.
     #[must_use]
     pub const fn new() -> Self {
-        Self { phase: Phase::Disarmed, last: Command::rest(0.0), last_ns: 0, acknowledged_ns: 0 }
+        Self {
+            phase: Phase::Disarmed,
+            last: Command::rest(0.0),
+            last_ns: 0,
+            braking_since_ns: None,
+            acknowledged_ns: 0,
+        }
     }
 
     /// Where in its life it is.

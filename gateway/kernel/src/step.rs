@@ -65,6 +65,7 @@ fn shake_hands(
         let armed = State {
             last: standing(&input.measured),
             last_ns: now_ns,
+            braking_since_ns: None,
             acknowledged_ns: now_ns,
             ..state.go(Phase::Armed)
         };
@@ -98,8 +99,10 @@ fn pass(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Ve
     let dt_ns = now_ns.saturating_sub(state.last_ns).min(limits.step_max_ns);
     #[allow(clippy::cast_precision_loss)] // a few milliseconds
     let dt_s = dt_ns as f64 * 1e-9;
-    let (command, clamps) = limit::hold(limits, &request, &state.last, &input.measured, dt_s);
-    let state = State { last: command, last_ns: now_ns, ..state };
+    let braking_since_ns = request.brake.then(|| state.braking_since_ns.unwrap_or(now_ns));
+    let state = State { last_ns: now_ns, braking_since_ns, ..state };
+    let (command, clamps) = limit::hold(limits, &request, &state, &input.measured, dt_s);
+    let state = State { last: command, ..state };
     let verdict =
         if clamps.any() { Verdict::Clamp(command, clamps) } else { Verdict::Allow(command) };
     (state, verdict)

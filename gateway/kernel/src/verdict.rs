@@ -35,13 +35,15 @@ pub struct Clamps {
     pub steering: bool,
     /// Each arm's target stroke or opening.
     pub arms: [bool; WHEELS],
+    /// The parking brake, which waits for the machine to stand.
+    pub brake: bool,
 }
 
 impl Clamps {
     /// True when anything was changed.
     #[must_use]
     pub fn any(&self) -> bool {
-        self.throttle || self.steering || self.arms.contains(&true)
+        self.throttle || self.steering || self.brake || self.arms.contains(&true)
     }
 }
 

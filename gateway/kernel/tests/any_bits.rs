@@ -54,10 +54,11 @@ fn order() -> impl Strategy<Value = Order> {
 }
 
 fn measured() -> impl Strategy<Value = Measured> {
-    (proptest::array::uniform6(bits()), bits(), bits(), bits()).prop_map(
-        |(stroke_m, front_angle_rad, roll_rad, pitch_rad)| Measured {
+    (proptest::array::uniform6(bits()), bits(), bits(), bits(), bits()).prop_map(
+        |(stroke_m, front_angle_rad, speed_m_s, roll_rad, pitch_rad)| Measured {
             stroke_m,
             front_angle_rad,
+            speed_m_s,
             roll_rad,
             pitch_rad,
         },
@@ -85,8 +86,8 @@ prop_compose! {
 /// Limits that can be held to, from none at all to no limit; the machine stands level within them.
 fn sound_limits() -> impl Strategy<Value = Limits> {
     let limit = prop_oneof![4 => 0.0..2.0_f64, 1 => Just(0.0), 1 => Just(1e300)];
-    (proptest::array::uniform9(limit), 0.01..1.0_f64).prop_map(|(floats, lean)| {
-        let [s0, s1, s2, o, t0, t1, a0, a1, a2] = floats;
+    (proptest::array::uniform10(limit), 0.01..1.0_f64).prop_map(|(floats, lean)| {
+        let [s0, s1, s2, o, t0, t1, a0, a1, a2, b] = floats;
         let limits = Limits {
             stroke_max_m: s0,
             stroke_rate_m_s: s1,
@@ -97,6 +98,7 @@ fn sound_limits() -> impl Strategy<Value = Limits> {
             angle_max_rad: a0,
             angle_rate_rad_s: a1,
             angle_error_rad: a2,
+            brake_speed_m_s: b,
             roll_max_rad: lean,
             pitch_max_rad: lean,
             ..LIMITS
@@ -161,12 +163,14 @@ proptest! {
     }
 
     #[test]
-    fn rates_hold_whatever_is_asked(
-        requests in proptest::collection::vec(command(finite().boxed()), 2..60),
+    fn rates_hold_whatever_is_asked_and_measured(
+        steps in proptest::collection::vec(
+            (command(finite().boxed()), proptest::array::uniform6(finite()), finite(), finite()), 2..60),
     ) {
         let mut bench = Bench::armed();
         let mut before: Option<Command> = None;
-        for request in requests {
+        for (request, stroke_m, front_angle_rad, speed_m_s) in steps {
+            bench.measured = Measured { stroke_m, front_angle_rad, speed_m_s, ..bench.measured };
             let Some(now) = bench.run(Order::None, request).command() else { break };
             if let Some(before) = before {
                 let dt_s = 1e-9 * TICK_NS as f64;
@@ -202,16 +206,16 @@ proptest! {
 
     #[test]
     fn limits_of_any_bits_never_panic(
-        floats in proptest::array::uniform11(bits()), periods in any::<u32>(),
+        floats in proptest::array::uniform12(bits()), periods in any::<u32>(),
         period_ns in any::<u64>(), modulus in any::<u8>(), lag in any::<u8>(),
         inputs in proptest::collection::vec(any_input(), 1..4),
     ) {
         let every = Deadline { period_ns, periods };
-        let [s0, s1, s2, o, t0, t1, a0, a1, a2, r, p] = floats;
+        let [s0, s1, s2, o, t0, t1, a0, a1, a2, r, p, b] = floats;
         let limits = Limits {
             stroke_max_m: s0, stroke_rate_m_s: s1, stroke_error_m: s2, opening_max: o,
             throttle_max: t0, throttle_rate_s: t1, angle_max_rad: a0, angle_rate_rad_s: a1,
-            angle_error_rad: a2, roll_max_rad: r, pitch_max_rad: p, status: every, sensors: every,
+            angle_error_rad: a2, brake_speed_m_s: b, brake_wait_ns: period_ns, roll_max_rad: r, pitch_max_rad: p, status: every, sensors: every,
             observation: every, policy: every, acknowledgement: every, handshake_steps: 1,
             handshake_max_ns: period_ns, counter_lag_max: lag, counter_modulus: modulus,
             step_max_ns: period_ns,

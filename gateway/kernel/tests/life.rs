@@ -3,7 +3,7 @@
 mod bench;
 
 use bench::{Bench, LIMITS, TICK_NS, coast, strokes};
-use xt28_safety::{Arms, Command, Order, Phase, Reason, Stream, Verdict};
+use xt28_safety::{Arms, Clamps, Command, Order, Phase, Reason, Stream, Verdict};
 
 #[test]
 fn nothing_leaves_before_the_handshake_is_through() {
@@ -160,6 +160,40 @@ fn the_brake_takes_the_throttle_away() {
     let both = Command { throttle: 0.5, brake: true, ..coast() };
     let held = bench.run(Order::None, both).command().unwrap();
     assert!(held.throttle == 0.0 && held.brake);
+}
+
+#[test]
+fn the_brake_waits_for_a_machine_that_moves_but_not_for_ever() {
+    let brake = Command { brake: true, ..coast() };
+    let mut bench = Bench::armed();
+    for speed_m_s in [1.5, -1.5] {
+        bench.measured.speed_m_s = speed_m_s;
+        let waits = Clamps { brake: true, ..Clamps::default() };
+        assert_eq!(bench.run(Order::None, brake), Verdict::Clamp(coast(), waits));
+    }
+    bench.measured.speed_m_s = 0.05;
+    assert_eq!(bench.run(Order::None, brake), Verdict::Allow(brake));
+    bench.measured.speed_m_s = 0.5;
+    assert_eq!(bench.run(Order::None, brake), Verdict::Allow(brake), "what is closed stays closed");
+    assert_eq!(bench.run(Order::None, coast()), Verdict::Allow(coast()));
+    let ticks = (0..200).take_while(|_| bench.run(Order::None, brake) != Verdict::Allow(brake));
+    assert_eq!(ticks.count() as u64 * TICK_NS, LIMITS.brake_wait_ns);
+}
+
+#[test]
+fn a_wire_that_breaks_moves_no_target_faster_than_its_rate() {
+    let mut bench = Bench::armed();
+    bench.measured.front_angle_rad = -0.35;
+    let ask = Command { front_angle_rad: -0.35, ..strokes(0.17) };
+    for _ in 0..200 {
+        bench.run(Order::None, ask);
+    }
+    bench.measured.stroke_m[2] = 0.545;
+    bench.measured.front_angle_rad = 0.436;
+    let held = bench.run(Order::None, ask).command().unwrap();
+    let Arms::Position([_, _, Some(stroke_m), ..]) = held.arms else { panic!("{held:?}") };
+    assert!((stroke_m - 0.172).abs() < 1e-9, "{stroke_m}");
+    assert!((held.front_angle_rad + 0.35 - 0.3_f64.to_radians()).abs() < 1e-9, "{held:?}");
 }
 
 #[test]

@@ -46,6 +46,10 @@ const GOAL_MAX_M: f64 = 300.0;
 const STANDING_M_S: f64 = 0.03;
 /// Standing this long ends a drive, s.
 const STANDING_S: f64 = 1.0;
+/// Less than this along the path counts as no progress, m, and so long without any ends a drive, s
+/// (assumed: at the creeping speed it is half a second's way).
+const PROGRESS_M: f64 = 0.1;
+const NO_PROGRESS_S: f64 = 10.0;
 /// Throttle trim per speed error, 1/m, and its bound: for a machine that is not quite as fast as
 /// its file says.
 const TRIM_PER_M: f64 = 0.05;
@@ -68,8 +72,8 @@ pub struct Goto {
 enum Stage {
     /// Not armed yet, or no fix.
     Waiting,
-    /// On the way; metres covered along the path.
-    Driving { path: Path, along_m: f64 },
+    /// On the way; metres covered along the path, and where and when it last got on.
+    Driving { path: Path, along_m: f64, got_on: Option<(f64, SimTime)> },
     /// Throttle let go; since when it stands, if it does.
     Stopping { since: Option<SimTime> },
     /// Standing for good.
@@ -94,7 +98,7 @@ impl Goto {
 
     /// Throttle and front joint target.
     fn drive(&mut self, seen: &Observation, pose: &Pose, dt_s: f64) -> (f64, f64) {
-        let Stage::Driving { path, along_m } = &mut self.stage else {
+        let Stage::Driving { path, along_m, .. } = &mut self.stage else {
             return (0.0, seen.front_joint_rad);
         };
         let on_path = path.nearest(pose, *along_m);
@@ -138,7 +142,17 @@ impl Goto {
                     self.stage = Stage::Ended(self.judge(pose));
                 }
             }
-            Stage::Waiting | Stage::Driving { .. } | Stage::Ended(_) => {}
+            Stage::Driving { along_m, got_on, .. } => {
+                let (mark_m, since) = *got_on.get_or_insert((*along_m, seen.at));
+                if seen.since_arming_s.is_none() || *along_m > mark_m + PROGRESS_M {
+                    *got_on = Some((*along_m, seen.at));
+                } else if seen.at.since(since).as_secs_f64() >= NO_PROGRESS_S {
+                    self.stage = Stage::Ended(Outcome::Failed(format!(
+                        "no progress for {NO_PROGRESS_S} s, {mark_m:.1} m along the path; is something in the way?"
+                    )));
+                }
+            }
+            Stage::Waiting | Stage::Ended(_) => {}
         }
     }
 
@@ -155,7 +169,7 @@ impl Goto {
             )));
         }
         match Path::plan(from, &self.goal, tightest) {
-            Some(path) => Stage::Driving { path, along_m: 0.0 },
+            Some(path) => Stage::Driving { path, along_m: 0.0, got_on: None },
             None => Stage::Ended(Outcome::Failed(format!(
                 "no forward path to the goal is wider than the machine's turning radius of {:.1} m; \
                  give a goal further ahead",

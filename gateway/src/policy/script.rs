@@ -23,7 +23,7 @@
 
 use std::path::Path;
 
-use xt28_safety::{Arms, Command};
+use xt28_safety::{Arms, Command, Limits};
 
 use super::script_file::{Entry, Mode, ScriptError, ScriptFile, Stroke};
 use super::{Outcome, Pace, Policy};
@@ -48,20 +48,20 @@ struct Start {
 }
 
 impl Script {
-    /// A script from a file.
+    /// A script from a file, for a machine with these limits.
     ///
     /// # Errors
     /// [`ScriptError`], with file, line and what would be right.
-    pub fn load(path: &Path) -> Result<Self, ScriptError> {
-        ScriptFile::read(path).map(Self::new)
+    pub fn load(path: &Path, limits: &Limits) -> Result<Self, ScriptError> {
+        ScriptFile::read(path, limits).map(Self::new)
     }
 
     /// A script from TOML text; `path` only names it in errors.
     ///
     /// # Errors
     /// [`ScriptError::Parse`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, ScriptError> {
-        ScriptFile::parse(text, path).map(Self::new)
+    pub fn parse(text: &str, path: &Path, limits: &Limits) -> Result<Self, ScriptError> {
+        ScriptFile::parse(text, path, limits).map(Self::new)
     }
 
     fn new(file: ScriptFile) -> Self {
@@ -213,7 +213,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
 
     fn at(t_s: f64) -> Command {
         let start = Start { stroke_m: [0.17; 6], front_angle_rad: 0.0 };
-        Script::parse(TEXT, Path::new("t.toml")).unwrap().at(t_s, &start)
+        Script::parse(TEXT, Path::new("t.toml"), &Limits::XT28).unwrap().at(t_s, &start)
     }
 
     #[test]
@@ -235,7 +235,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
 
     /// Where FR is told to be at each time while the machine has it where `seen_m` says.
     fn told_m(text: &str, seen: [(f64, f64); 3]) -> [Option<f64>; 3] {
-        let mut script = Script::parse(text, Path::new("t.toml")).unwrap();
+        let mut script = Script::parse(text, Path::new("t.toml"), &Limits::XT28).unwrap();
         seen.map(|(t_s, stroke_m)| {
             let zero = PerWheel::splat(0.0);
             let seen = Observation {
@@ -276,7 +276,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
 
     #[test]
     fn it_is_over_after_its_last_ramp() {
-        assert_eq!(Script::parse(TEXT, Path::new("t.toml")).unwrap().end_s(), 6.0);
+        assert_eq!(Script::parse(TEXT, Path::new("t.toml"), &Limits::XT28).unwrap().end_s(), 6.0);
     }
 
     #[test]
@@ -289,7 +289,8 @@ opening_percent = [10, -10, 0, 0, 30, -30]
             ("ramp_s = 4", "arms = \"crane\"", "t.toml:7: unknown variant `crane`"),
         ] {
             assert!(TEXT.contains(from));
-            let error = Script::parse(&TEXT.replacen(from, to, 1), Path::new("t.toml"));
+            let error =
+                Script::parse(&TEXT.replacen(from, to, 1), Path::new("t.toml"), &Limits::XT28);
             let error = error.unwrap_err().to_string();
             assert!(error.starts_with(wanted), "{error}");
             assert!(!error.contains('\n'), "{error}");

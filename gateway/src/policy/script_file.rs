@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::Spanned;
+use xt28_safety::Limits;
 
 /// Why a script was refused.
 #[derive(Debug, thiserror::Error)]
@@ -79,13 +80,13 @@ pub(super) enum Hold {
 }
 
 impl ScriptFile {
-    pub(super) fn read(path: &Path) -> Result<Self, ScriptError> {
+    pub(super) fn read(path: &Path, limits: &Limits) -> Result<Self, ScriptError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| ScriptError::Read { path: path.to_owned(), source })?;
-        Self::parse(&text, path)
+        Self::parse(&text, path, limits)
     }
 
-    pub(super) fn parse(text: &str, path: &Path) -> Result<Self, ScriptError> {
+    pub(super) fn parse(text: &str, path: &Path, limits: &Limits) -> Result<Self, ScriptError> {
         let refuse = |at: usize, problem: String| ScriptError::Parse {
             path: path.to_owned(),
             line: text.as_bytes()[..at.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1,
@@ -98,7 +99,7 @@ impl ScriptFile {
         let mut before_s = 0.0;
         for entry in &file.commands {
             let at = entry.at_s.span().start;
-            entry.check(before_s).map_err(|problem| refuse(at, problem))?;
+            entry.check(before_s, limits).map_err(|problem| refuse(at, problem))?;
             before_s = *entry.at_s.get_ref();
         }
         match file.end_s {
@@ -111,21 +112,31 @@ impl ScriptFile {
 }
 
 impl Entry {
-    /// Refuses what the safety kernel would cut, so that a script runs as written.
-    fn check(&self, before_s: f64) -> Result<(), String> {
+    /// Refuses what is outside the safety kernel's absolute limits, so that a script runs as written. Its
+    /// rates still apply: a step is a ramp at the machine.
+    fn check(&self, before_s: f64, limits: &Limits) -> Result<(), String> {
         let at_s = *self.at_s.get_ref();
         if !(at_s >= before_s && at_s.is_finite()) {
             return Err(format!("at_s = {at_s} must not be before the command above, {before_s}"));
         }
+        // In the file's units, where 0.25 m must not become 249.999 mm.
+        let whole = |value: f64, factor: f64| (value * factor * 1e6).round() * 1e-6;
+        let stroke_mm = whole(limits.stroke_max_m, 1e3);
+        let opening_percent = whole(limits.opening_max, 1e2);
+        let throttle_percent = whole(limits.throttle_max, 1e2);
+        let angle_deg = whole(limits.angle_max_rad.to_degrees(), 1.0);
         let strokes = self.stroke_mm.iter().flatten().filter_map(|stroke| match stroke {
-            Stroke::Target(mm) => Some(("stroke_mm", *mm, 0.0, 250.0)),
+            Stroke::Target(mm) => Some(("stroke_mm", *mm, 0.0, stroke_mm)),
             Stroke::Hold(_) => None,
         });
         let openings = self.opening_percent.iter().flatten();
         let numbers = strokes
-            .chain(openings.map(|o| ("opening_percent", *o, -30.0, 30.0)))
-            .chain(self.throttle_percent.map(|t| ("throttle_percent", t, -100.0, 100.0)))
-            .chain(self.front_angle_deg.map(|a| ("front_angle_deg", a, -25.0, 25.0)))
+            .chain(openings.map(|o| ("opening_percent", *o, -opening_percent, opening_percent)))
+            .chain(
+                self.throttle_percent
+                    .map(|t| ("throttle_percent", t, -throttle_percent, throttle_percent)),
+            )
+            .chain(self.front_angle_deg.map(|a| ("front_angle_deg", a, -angle_deg, angle_deg)))
             .chain([("ramp_s", self.ramp_s, 0.0, 3600.0)]);
         for (key, value, low, high) in numbers {
             // Written so that NaN is refused.

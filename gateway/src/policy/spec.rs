@@ -5,7 +5,7 @@ use std::path::Path;
 use xt28_machine::Machine;
 
 use super::{Goto, Hold, Policy, Script, ScriptError};
-use crate::Pose;
+use crate::{GatewayConfig, Pose};
 
 /// Why a policy could not be had.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +39,10 @@ pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecE
             let pose = goal_pose(goal).ok_or_else(|| SpecError::Goal { spec: spec.to_owned() })?;
             Ok(Box::new(Goto::new(machine, pose)))
         }
-        Some(("script", file)) => Ok(Box::new(Script::load(Path::new(file))?)),
+        Some(("script", file)) => {
+            let limits = GatewayConfig::new(machine).limits;
+            Ok(Box::new(Script::load(Path::new(file), &limits)?))
+        }
         None if spec == "hold" => Ok(Box::new(Hold)),
         _ => Err(SpecError::Unknown { spec: spec.to_owned() }),
     }

@@ -34,6 +34,10 @@ pub(crate) struct Faults {
     pub(crate) drive_status_stuck: bool,
     /// The cylinder loads stay away.
     pub(crate) loads_silent: bool,
+    /// The receiver gets no corrections any more.
+    pub(crate) gnss_code_only: bool,
+    /// Something is in the machine's way.
+    pub(crate) wheels_held: bool,
 }
 
 pub(crate) struct Bench {
@@ -91,7 +95,11 @@ impl Bench {
             self.enabled = false;
         }
         let command = if self.enabled { self.command } else { Command::rest(0.0) };
+        let pose = self.vehicle.pose;
         self.vehicle.step(&command);
+        if self.faults.wheels_held {
+            (self.vehicle.pose, self.vehicle.speed_m_s) = (pose, 0.0);
+        }
         self.now = SimTime::from_millis(now.as_nanos() / 1_000_000 + TICK_MS);
     }
 
@@ -226,15 +234,21 @@ impl Bench {
         });
         let time_of_week_ms = u32::try_from(o.at.as_nanos() / 1_000_000).unwrap();
         let [velocity_east_m_s, velocity_north_m_s, up] = located.velocity_m_s;
+        let (carrier, accuracy_horizontal_m) = if self.faults.gnss_code_only {
+            (CarrierSolution::None, 3.0)
+        } else {
+            (CarrierSolution::Fixed, 0.014)
+        };
         let mut bytes = Vec::new();
         let pvt = NavPvt {
             time_of_week_ms,
             fix_type: FixType::ThreeD,
             fix_ok: true,
-            carrier: CarrierSolution::Fixed,
+            position_valid: true,
+            carrier,
             satellites: 17,
             position,
-            accuracy_horizontal_m: 0.014,
+            accuracy_horizontal_m,
             velocity_east_m_s,
             velocity_north_m_s,
             velocity_down_m_s: -up,
@@ -244,7 +258,7 @@ impl Bench {
             time_of_week_ms,
             valid: true,
             position,
-            accuracy_horizontal_m: 0.014,
+            accuracy_horizontal_m,
             ..NavHpPosLlh::default()
         };
         let relative = NavRelPosNed {

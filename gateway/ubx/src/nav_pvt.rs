@@ -76,6 +76,8 @@ pub struct NavPvt {
     pub differential: bool,
     /// State of the carrier phase.
     pub carrier: CarrierSolution,
+    /// Longitude, latitude and height are valid (bit `invalidLlh` is clear).
+    pub position_valid: bool,
     /// Satellites used.
     pub satellites: u8,
     /// Antenna position on WGS-84; 1e-7 deg and 1 mm on the wire.
@@ -151,6 +153,7 @@ impl NavPvt {
         let course = steps::<u32>("course accuracy", self.accuracy_course_rad / DEGREE, 1e5)?;
         p.put(72, course.to_le_bytes());
         p.put(76, steps::<u16>("dilution", self.dilution, 1e2)?.to_le_bytes());
+        p.put(78, [u8::from(!self.position_valid)]);
         frame::write(Self::CLASS, Self::ID, &p.0, bytes);
         Ok(())
     }
@@ -169,6 +172,7 @@ impl NavPvt {
             fix_ok: flags & 1 != 0,
             differential: flags & 2 != 0,
             carrier: CarrierSolution::from_code(flags >> 6),
+            position_valid: p.u8(78) & 1 == 0,
             satellites: p.u8(23),
             position: Geodetic {
                 longitude_rad: f64::from(p.i32(24)) * 1e-7 * DEGREE,

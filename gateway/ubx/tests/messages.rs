@@ -22,6 +22,7 @@ fn pvt() -> NavPvt {
         fix_ok: true,
         differential: true,
         carrier: CarrierSolution::Fixed,
+        position_valid: true,
         satellites: 17,
         position: Geodetic::from_degrees(59.800_123_4, 17.900_432_1, 23.456),
         height_msl_m: -1.234,

@@ -104,6 +104,7 @@ fn drive(setup: &Setup, bus: &str, folder: &Path, log: &Path) -> Result<Start, F
             Incident::Kill(Node::Gateway) => gateway.kill()?,
             Incident::Kill(Node::Emulator) => emulator.kill()?,
             Incident::Order(GatewayOrder::Arm) => gateway.signal(Signal::USR1)?,
+            Incident::Order(GatewayOrder::EmergencyStop) => gateway.signal(Signal::USR2)?,
             // The emulator has it from its command line.
             Incident::Power(_) => {}
         }

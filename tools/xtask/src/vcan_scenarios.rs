@@ -51,6 +51,7 @@ struct Check {
 const CHECKS: &[Check] = &[
     exact("straight-25m"),
     exact("command-loss"),
+    exact("emergency-stop"),
     exact("brown-out"),
     exact("arm-step-response"),
     exact("cross-slope"),

@@ -1,4 +1,8 @@
 //! The parking brake: as commanded, and by itself when the command is lost.
+//!
+//! A command closes it at any speed (assumed: the firmware's button needs less than 150 per mille of
+//! filtered pedal, facts 4.4, and a throttle on the bus has no such filter). The safety kernel waits for
+//! the machine to stand.
 
 use core::time::Duration;
 

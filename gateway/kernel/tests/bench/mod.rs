@@ -19,8 +19,13 @@ pub(crate) struct Bench {
 
 impl Bench {
     pub(crate) fn new() -> Self {
-        let measured =
-            Measured { stroke_m: [0.17; 6], front_angle_rad: 0.0, roll_rad: 0.0, pitch_rad: 0.0 };
+        let measured = Measured {
+            stroke_m: [0.17; 6],
+            front_angle_rad: 0.0,
+            speed_m_s: 0.0,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+        };
         Self { limits: LIMITS, state: State::new(), now_ns: 1_000_000_000, counter: 0, measured }
     }
 

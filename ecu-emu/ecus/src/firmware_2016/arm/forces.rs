@@ -99,8 +99,7 @@ impl Shares {
         if sum == 0 {
             return None;
         }
-        let [fr, fl, mr, ml, br, bl] = wheel.map(f64::from).0;
-        let _ = fl;
+        let [fr, _, mr, ml, br, bl] = wheel.map(f64::from).0;
         let sum = f64::from(sum);
         let x_m = TRACK_M * (fr + mr + br) / sum;
         let y_m = (FRONT_TO_MIDDLE_M * (ml + mr) + WHEELBASE_M * (bl + br)) / sum;

@@ -24,27 +24,38 @@ pub(super) struct Follower {
     integral: f64,
     /// Asleep, or awake towards A (error above zero) or B.
     awake: Option<bool>,
+    /// Its own currents `[A, B]` as it last wrote them, mA.
+    ma: [i32; 2],
 }
 
 impl Follower {
-    /// One tick at an error (leader less follower) of so many 0.01 deg: currents `[A, B]`, mA, or
-    /// `None` where the valve's values are not rewritten.
-    pub(super) fn step(&mut self, error: i32, mean_count: i32, quirks: Quirks) -> Option<[i32; 2]> {
+    /// One tick at an error (leader less follower) of so many 0.01 deg: currents `[A, B]`, mA. In its
+    /// dead-band the firmware does not rewrite them.
+    pub(super) fn step(&mut self, error: i32, mean_count: i32, quirks: Quirks) -> [i32; 2] {
+        match self.written(error, mean_count, quirks) {
+            Some(ma) => self.ma = ma,
+            None if quirks.follower_holds_current_in_dead_band => {}
+            None => self.ma = [0; 2],
+        }
+        self.ma
+    }
+
+    /// What it writes in this tick; in its dead-band nothing.
+    fn written(&mut self, error: i32, mean_count: i32, quirks: Quirks) -> Option<[i32; 2]> {
         self.integral = if error.abs() > INTEGRAL_FROM {
             self.integral + PERIOD_S * f64::from(error)
         } else {
             0.0
         };
-        let asleep = (!quirks.follower_holds_current_in_dead_band).then_some([0; 2]);
         match self.awake {
             None => {
                 self.integral = 0.0;
                 self.awake = (error.abs() > WAKE_AT).then_some(error > 0);
-                asleep
+                None
             }
             Some(towards_a) if (error > 0) != towards_a => {
                 self.awake = None;
-                asleep
+                None
             }
             Some(towards_a) => {
                 let sum = self.proportional(error, mean_count, quirks) + self.integral_part();
@@ -98,18 +109,18 @@ mod tests {
     fn it_wakes_above_half_a_degree_and_sleeps_when_the_error_turns() {
         let quirks = Quirks::none();
         let mut follower = Follower::default();
-        assert_eq!(follower.step(50, FAST, quirks), Some([0, 0]));
-        assert_eq!(follower.step(51, FAST, quirks), Some([0, 0]), "awake from the next tick");
+        assert_eq!(follower.step(50, FAST, quirks), [0, 0]);
+        assert_eq!(follower.step(51, FAST, quirks), [0, 0], "awake from the next tick");
         // P = 400 of 1000 per deg; 0.4 * 500 = 200, 200 * 85 / 1000 = 17 mA.
-        assert_eq!(follower.step(500, FAST, quirks), Some([432, 0]));
-        assert_eq!(follower.step(-1, FAST, quirks), Some([0, 0]));
-        assert_eq!(awake(-500, quirks).step(-500, FAST, quirks), Some([0, 432]));
+        assert_eq!(follower.step(500, FAST, quirks), [432, 0]);
+        assert_eq!(follower.step(-1, FAST, quirks), [0, 0]);
+        assert_eq!(awake(-500, quirks).step(-500, FAST, quirks), [0, 432]);
     }
 
     /// Facts 4.6: below 50 counts there is no P part at all.
     #[test]
     fn the_gate_is_a_step_where_a_ramp_was_meant() {
-        let at = |count, quirks| awake(500, quirks).step(500, count, quirks).unwrap()[0];
+        let at = |count, quirks| awake(500, quirks).step(500, count, quirks)[0];
         let firmware = Quirks::firmware();
         assert_eq!([at(49, firmware), at(50, firmware)], [0, 432]);
         assert_eq!([at(25, Quirks::none()), at(50, Quirks::none())], [423, 432]);
@@ -119,12 +130,11 @@ mod tests {
     #[test]
     fn in_the_dead_band_the_last_current_stays() {
         let mut firmware = awake(500, Quirks::firmware());
-        (0..1000).for_each(|_| {
-            firmware.step(500, FAST, Quirks::firmware());
-        });
-        assert_eq!(firmware.step(-5, FAST, Quirks::firmware()), None);
+        let last = (0..1000).map(|_| firmware.step(500, FAST, Quirks::firmware())).last().unwrap();
+        assert!(last[0] > REST_MA, "{last:?}");
+        assert_eq!(firmware.step(-5, FAST, Quirks::firmware()), last);
         let mut other = awake(500, Quirks::none());
-        assert_eq!(other.step(-5, FAST, Quirks::none()), Some([0, 0]));
+        assert_eq!(other.step(-5, FAST, Quirks::none()), [0, 0]);
     }
 
     /// P of 2000 and I of 500 together: 212 mA above rest, or the 85 of the rear valve.
@@ -134,7 +144,7 @@ mod tests {
             let mut follower = awake(5000, quirks);
             (0..1000).map(|_| follower.step(5000, FAST, quirks)).last().unwrap()
         };
-        assert_eq!(end(Quirks::firmware()), Some([627, 0]));
-        assert_eq!(end(Quirks::none()), Some([500, 0]));
+        assert_eq!(end(Quirks::firmware()), [627, 0]);
+        assert_eq!(end(Quirks::none()), [500, 0]);
     }
 }

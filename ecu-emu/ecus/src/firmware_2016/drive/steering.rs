@@ -21,7 +21,7 @@ pub(super) enum TurnMode {
     Follow = 64,
 }
 
-/// Turn mode, follower, and the currents last written.
+/// Turn mode and follower.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steering {
     quirks: Quirks,
@@ -29,8 +29,6 @@ pub(super) struct Steering {
     /// The button logic has seen a press; until then it believes in combined steering.
     pressed: bool,
     follower: Follower,
-    /// `[A, B]` of front and rear, mA.
-    ma: [[i32; 2]; 2],
 }
 
 /// What steering depends on.
@@ -47,13 +45,7 @@ pub(super) struct SteerInputs {
 
 impl Steering {
     pub(super) fn new(quirks: Quirks) -> Self {
-        Self {
-            quirks,
-            mode: TurnMode::Front,
-            pressed: false,
-            follower: Follower::default(),
-            ma: [[0; 2]; 2],
-        }
+        Self { quirks, mode: TurnMode::Front, pressed: false, follower: Follower::default() }
     }
 
     /// Buttons 13 front, 14 rear, 15 combined and, from there, following.
@@ -81,7 +73,7 @@ impl Steering {
     /// Currents `[A, B]` of front and rear, mA.
     pub(super) fn step(&mut self, i: &SteerInputs) -> [[i32; 2]; 2] {
         let (alone, none) = (rate_ma(i.joystick, FULL_MA), [0; 2]);
-        self.ma = match self.mode {
+        match self.mode {
             TurnMode::Front => [alone, none],
             TurnMode::Rear => [none, alone],
             TurnMode::Combined => [alone, rate_ma(i.joystick, REAR_MA)],
@@ -90,13 +82,13 @@ impl Steering {
                 let follows = self.follower.step(error, i.mean_count, self.quirks);
                 if i.state == DriveState::Reverse {
                     // The front one follows: its angle must fall for the error to.
-                    [follows.map_or(self.ma[0], |[a, b]| [b, a]), alone]
+                    let [a, b] = follows;
+                    [[b, a], alone]
                 } else {
-                    [alone, follows.unwrap_or(self.ma[1])]
+                    [alone, follows]
                 }
             }
-        };
-        self.ma
+        }
     }
 }
 

@@ -144,6 +144,14 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     // Pressures are read where they are logged, though a diagnosis does without.
     let (_, talk) = heard_of("PressMid", 0.0, 8.0);
     assert!(talk.contains("bore_pressure.MR stops at 8.0 s"), "{talk}");
+    // But most of a log is not given for them.
+    let (status, talk) = heard_of("PressMid", 6.0, 20.0);
+    assert_ne!(status, Some(2), "{talk}");
+    assert!(
+        talk.contains("bore_pressure.MR begins at 6.0 s, as 3 more that come and go"),
+        "{talk}"
+    );
+    assert!(talk.contains("looked at without") && !talk.contains("are looked at."), "{talk}");
 }
 
 #[test]

@@ -64,8 +64,20 @@ impl FieldLog {
     /// it stays said.
     #[must_use]
     pub fn within(self, span_s: [f64; 2]) -> Self {
-        let series = self.series.iter().map(|(channel, all)| (*channel, all.within(span_s)));
+        let cut = |channel: &Channel, all: &Series| {
+            // A fix is where the machine was then, and no longer.
+            let is_fix = matches!(channel, Channel::East | Channel::North | Channel::Heading);
+            if is_fix { all.told_within(span_s) } else { all.within(span_s) }
+        };
+        let series = self.series.iter().map(|(channel, all)| (*channel, cut(channel, all)));
         Self { series: series.collect(), duration_s: span_s[1] - span_s[0], ..self }
+    }
+
+    /// The same without some channels, as if nobody had logged them.
+    #[must_use]
+    pub fn without(mut self, channels: &[Channel]) -> Self {
+        self.series.retain(|channel, _| !channels.contains(channel));
+        self
     }
 
     /// Reads a log from `input`; `name` is its name in errors.

@@ -99,7 +99,7 @@ impl RunSet {
                 (Some(about), Some(file), Some(run)) => claims::denied(about, file, run, &log),
                 _ => Vec::new(),
             };
-            let (log, note) = attended(log);
+            let (log, left_out) = attended(log);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
                 file,
@@ -108,7 +108,7 @@ impl RunSet {
                 terrain: ground,
                 log,
             };
-            Ok((run, claims.into_iter().chain(note).collect()))
+            Ok((run, claims.into_iter().chain(left_out).collect()))
         };
         let called = names(paths);
         let read: Vec<_> =

@@ -61,6 +61,14 @@ impl Series {
         Self { at_s, value }
     }
 
+    /// The samples between two instants, with the first of them as zero: what is told once and not held.
+    #[must_use]
+    pub fn told_within(&self, [from_s, to_s]: [f64; 2]) -> Self {
+        let inside = self.iter().filter(|(at_s, _)| *at_s >= from_s && *at_s <= to_s);
+        let (at_s, value) = inside.map(|(at_s, v)| (at_s - from_s, v)).unzip();
+        Self { at_s, value }
+    }
+
     /// The same with every value multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -104,6 +112,15 @@ mod tests {
         assert_eq!(series.at(0.499), Some(1.0));
         assert_eq!(series.at(0.5), Some(2.0));
         assert_eq!(series.at(9.0), Some(2.0));
+    }
+
+    #[test]
+    fn what_is_held_goes_on_within_and_what_is_told_once_does_not() {
+        let series: Series = [(0.0, 1.0), (0.5, 2.0), (1.5, 3.0)].into_iter().collect();
+        let samples = |series: Series| series.iter().collect::<Vec<_>>();
+        assert_eq!(samples(series.within([0.75, 2.0])), [(0.0, 2.0), (0.75, 3.0)]);
+        assert_eq!(samples(series.told_within([0.75, 2.0])), [(0.75, 3.0)]);
+        assert_eq!(samples(series.told_within([0.5, 2.0])), [(0.0, 2.0), (1.0, 3.0)]);
     }
 
     #[test]

@@ -70,6 +70,8 @@ fn a_machine_on_a_slope_that_is_known_stands_as_it_should() {
         let mut all = replay.all_series().clone();
         let commands = log.all_series().iter().filter(|(channel, _)| channel.is_command());
         all.extend(commands.map(|(channel, samples)| (*channel, samples.clone())));
+        // It begins to the east; from there wheels and joints tell how it heads.
+        all.insert(Channel::Heading, [(0.0, 0.0)].into_iter().collect());
         let left = |ground| {
             let run = Signals::of_series("ours", &all, log.duration_s(), ground).unwrap();
             let residuals = Generator::Stance.residuals(&run, &machine, &sound);

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use xt28_machine::Wheel;
 use xt28_sim::Effects;
 
-use super::generator::{Generator, Residual};
+use super::generator::{Generator, Residual, STEP_S};
 use super::inquiry::Inquiry;
 use super::verdict::Diagnosis;
 use crate::GapError;
@@ -23,9 +23,6 @@ pub use horizons::{Curve, HORIZONS_S};
 pub use over_time::{CELL_S, Strip};
 pub use regimes::{OF_ARM, REGIMES, Row};
 pub use traces::Trace;
-
-/// Time between two samples of a residual, s.
-const STEP_S: f64 = 0.1;
 
 /// The details of one diagnosis.
 #[derive(Clone, Debug)]

@@ -134,9 +134,10 @@ impl Inquiry {
         }
         let again = tested(beside(&second).candidates(&others(&second, &likely)), shown);
         if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
-            let moved = better.fit.hypothesis != first.fit.hypothesis;
-            first = better.clone();
-            if moved {
+            // Its second was found, and is judged, beside the one that is told: one that stays within what
+            // is known of it is left as it was.
+            if better.fit.parts_from(&first.fit) {
+                first = better.clone();
                 court = beside(&first);
                 seconds = seconds_of(&court, &first, &[second.fit.hypothesis.effect]);
             }

@@ -36,13 +36,18 @@ use super::floor::Signal;
 use super::floors::BlockKey;
 use super::signals::{Samples, Signals};
 pub(super) use circuits::{PRESSURE_AT_TORQUE_MAX_PA, weights};
+pub(super) use controllers::STEER_WINDUP_DEG_S;
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 const STRIDE: usize = 10;
+/// Time from one sample of a residual to the next, s.
+pub(super) const STEP_S: f64 = 0.1;
 
-/// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors.
+/// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors. How hard a wheel
+/// rolls is not among them, though the stance reckons with it: whether its arm feels that is another law on each
+/// make (a tyre that flexes, a bearing that rubs).
 const STANDING: [&str; 3] = ["imu-offset", "seal-stiction", "standstill-drag"];
 
 /// Effects that show in how the wheels roll, beside the receiver's.

@@ -148,7 +148,7 @@ impl HowFar {
         };
         let (one_step, one) = squares::shrink(&steps(before), &steps(after));
         let (five_s, five) = squares::shrink(&before.five_s, &after.five_s);
-        let (run, whole) = squares::shrink(&before.run, &after.run);
+        let (run, whole) = squares::shrink_by_run(&before.run, &after.run);
         Shrink { one_step, five_s, run, interval: [one, five, whole] }
     }
 
@@ -192,9 +192,8 @@ impl HowFar {
         let blocks = |(k, course): (usize, &Course)| {
             let foretold = if of(k) { foretell(course) } else { Vec::new() };
             let stretches = foretold.iter();
-            let blocks: Vec<Squares> =
-                stretches.flat_map(|s| squares::of_stretch(&course.measured, s, horizon)).collect();
-            blocks
+            let blocks = stretches.flat_map(|s| squares::of_stretch(&course.measured, s, horizon));
+            blocks.map(|block| Squares { run: k, ..block }).collect::<Vec<_>>()
         };
         self.courses.par_iter().enumerate().flat_map_iter(blocks).collect()
     }

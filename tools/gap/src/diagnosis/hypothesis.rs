@@ -40,6 +40,19 @@ pub struct Fit {
     pub log_evidence: f64,
 }
 
+impl Fit {
+    /// Whether it is another one than `other`: elsewhere, of another beginning, or of another size than either
+    /// is known to.
+    #[must_use]
+    pub(super) fn parts_from(&self, other: &Self) -> bool {
+        let known = self.sigma.iter().zip(&other.sigma).map(|(a, b)| a.max(*b));
+        let mut sizes = self.values.iter().zip(&other.values).zip(known);
+        self.hypothesis != other.hypothesis
+            || (self.from_s - other.from_s).abs() > f64::EPSILON
+            || sizes.any(|((a, b), sigma)| (a - b).abs() > sigma)
+    }
+}
+
 impl Hypothesis {
     /// Every one of `effects` at every scope that it can have.
     #[must_use]

@@ -14,7 +14,7 @@ use xt28_sim::Terrain;
 
 use super::floors::Floors;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
-pub(in crate::diagnosis) use command_period::{PERIOD_S, command_period_s};
+pub(in crate::diagnosis) use command_period::{PERIOD_S, command_periods_s};
 use made::Made;
 pub(in crate::diagnosis) use receiver::unwound;
 use uncut::{CUT_M, uncut};
@@ -247,6 +247,8 @@ fn load_channel(series: &AllSeries, wheel: Wheel) -> Channel {
     if logged { pressures[0] } else { Channel::CylinderLoad(wheel) }
 }
 
+/// Mode of the arms in which targets count and the PI is at work (the wire contract: manual position).
+pub(super) const MANUAL_POSITION: f64 = 2.0;
 /// Target from which on it is none: it says to hold the arm (the wire contract: 510 mm).
 const HOLDS_M: f64 = 0.5095;
 

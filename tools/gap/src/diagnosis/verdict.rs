@@ -257,7 +257,7 @@ pub struct Shrink {
     pub five_s: f64,
     /// The whole machine over whole runs.
     pub run: f64,
-    /// 90 % bootstrap intervals of the three.
+    /// 90 % bootstrap intervals of the three: over blocks of 5 s, of the third over runs and blocks in them.
     pub interval: [[f64; 2]; 3],
 }
 

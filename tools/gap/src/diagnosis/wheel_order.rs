@@ -7,12 +7,10 @@ use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 
 use super::load_scale::pressed_n;
-use super::signals::{DT_S, Samples, Signals};
+use super::signals::{DT_S, MANUAL_POSITION, Samples, Signals};
 
 /// How fast an arm follows its target, s: 1 / (0.004 per mm times 212 mm/s), the paper's PI.
 const FOLLOWS_S: f64 = 1.18;
-/// Mode of the arms in which targets count.
-const MANUAL_POSITION: f64 = 2.0;
 /// A correlation above this says that one moves the other, ...
 const MOVES: f64 = 0.9;
 /// ... and below this that it does not. In between nothing is said: faults lie there.

@@ -68,7 +68,7 @@ impl RunSet {
         }
     }
 
-    /// As `about.toml` advises; without it, or where it advises none, the last third is held out.
+    /// As `about.toml` advises; without it, or where it advises none, the last third, rounded up, is held out.
     fn unasked(&self) -> Choice {
         let runs = self.runs();
         let advised = |run: &KnownRun| run.advised == Some(true);
@@ -85,7 +85,7 @@ impl RunSet {
         let why = if runs.len() < 2 {
             "there is only one run, so nothing is held out to judge a cause on"
         } else {
-            "nobody said which: at most a third is held out, the last that show no effect the others do not"
+            "nobody said which: a third is held out, rounded up, the last that show no effect the others do not"
         };
         let uses = (0..runs.len()).map(used).collect();
         Choice { uses, why: why.to_owned(), is_advised: false }

@@ -80,7 +80,8 @@ impl<'a> Ahead<'a> {
     }
 
     /// What it costs to believe, tolerances at their best in all runs; `only` are the generators that can
-    /// differ from the base.
+    /// differ from the base. What began in the middle of the runs driven is there from the start of the one
+    /// foretold.
     #[must_use]
     pub(in crate::diagnosis) fn cost(
         &self,
@@ -88,7 +89,7 @@ impl<'a> Ahead<'a> {
         only: &dyn Fn(Generator) -> bool,
     ) -> f64 {
         let was = self.driven.sums(belief, only);
-        let will = self.foretold.sums(belief, only);
+        let will = self.foretold.sums(Belief { from_s: 0.0, ..belief }, only);
         let step = self.step(&was, &will);
         let (before, after) =
             (self.driven.remaining(&was, &step), self.foretold.remaining(&will, &step));

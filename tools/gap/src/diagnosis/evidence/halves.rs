@@ -7,9 +7,8 @@
 
 use xt28_machine::Wheel;
 
-use super::stack::STEP_S;
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::generator::Generator;
+use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::signals::{DT_S, Signals};
 
 /// An opening below this is a shut valve.

@@ -7,11 +7,8 @@ use xt28_sim::Effects;
 
 use crate::diagnosis::belief::{Base, Belief, Course};
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::generator::Generator;
+use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::signals::Signals;
-
-/// Time between two samples of a residual, s.
-pub(super) const STEP_S: f64 = 0.1;
 
 /// One signal of a generator, over all runs.
 #[derive(Clone, Copy, Debug)]

@@ -10,9 +10,9 @@ use xt28_sim::Effects;
 use super::bumps::Bumps;
 use super::echo::{Echo, Filter};
 use super::halves::{Half, Scene, Uneven};
-use super::stack::{Group, STEP_S, Stack};
+use super::stack::{Group, Stack};
 use crate::diagnosis::belief::{Base, Belief};
-use crate::diagnosis::generator::Generator;
+use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::knob::Knob;
 use crate::diagnosis::signals::Signals;
 

@@ -7,11 +7,8 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Scope;
 
 use super::super::floor::Signal;
-use super::super::generator::{Generator, Residual};
+use super::super::generator::{Generator, Residual, STEP_S};
 use super::super::signals::{DT_S, Samples, Signals};
-
-/// Time between two samples of a residual, s.
-const STEP_S: f64 = 0.1;
 
 /// An opening below this is a closed valve: the ECU's currents have no smaller step that flows.
 const CLOSED: f64 = 0.01;
@@ -19,10 +16,11 @@ const CLOSED: f64 = 0.01;
 pub(in crate::diagnosis) const UNLOADED_N: f64 = 5.0e3;
 /// Throttle below this is let go.
 const LET_GO: f64 = 0.02;
+/// A demand that changes within this many samples steps: half a second, in which nobody tells its delay from
+/// its ramp (assumed).
+const STEP_SAMPLES: usize = 50;
 /// Wheels slower than this stand, rad/s.
 const STANDS_RAD_S: f64 = 0.05;
-/// Rolling radius for a distance, m; near enough to say whether there was one.
-const RADIUS_M: f64 = 0.74;
 
 /// What one arm did, the most over all runs, and for how long in all it could be judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -82,11 +80,13 @@ impl Excitation {
             }),
             throttle: most(&|s| s.throttle.iter().fold(0.0, |most, t| t.abs().max(most))),
             throttle_step: most(&|s| {
-                s.throttle.windows(2).fold(0.0, |most, pair| (pair[1] - pair[0]).abs().max(most))
+                let changes = [1, STEP_SAMPLES].map(|apart| change(&s.throttle, apart));
+                changes[0].max(changes[1])
             }),
             rolls_m: most(&|s| {
                 let speeds = (0..s.len).map(|i| s.mean_wheel_speed_rad_s(i).abs());
-                speeds.filter(|speed| *speed > STANDS_RAD_S).sum::<f64>() * DT_S * RADIUS_M
+                let turned_rad = speeds.filter(|speed| *speed > STANDS_RAD_S).sum::<f64>() * DT_S;
+                turned_rad * machine.wheels.radius_m
             }),
             commands: runs.clone().map(commands).sum(),
             fixes: runs.clone().map(|s| s.fixes.len()).sum(),
@@ -208,6 +208,12 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, machine: &Machine, wheel: Wh
         all = all.with(one);
     }
     all
+}
+
+/// The largest change over so many samples.
+fn change(values: &[f64], apart: usize) -> f64 {
+    let pairs = values.iter().zip(values.iter().skip(apart));
+    pairs.fold(0.0, |most, (from, to)| (to - from).abs().max(most))
 }
 
 fn range(values: impl Iterator<Item = f64>) -> f64 {

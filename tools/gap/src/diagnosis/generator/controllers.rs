@@ -8,7 +8,7 @@ use super::summed::best_sum;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
-const STEER_WINDUP_DEG_S: f64 = 40.0;
+pub(in crate::diagnosis) const STEER_WINDUP_DEG_S: f64 = 40.0;
 /// Halvings of a tenth of that, to a sixth of a thousandth of it.
 const HALVINGS: usize = 9;
 

@@ -13,10 +13,12 @@ pub(super) struct Grade {
 }
 
 impl Grade {
-    /// What is known of the ground of a run; `None` where it is no plane.
+    /// What is known of the ground of a run; `None` where it is no plane, or one that leans and no receiver
+    /// says which way the machine heads on it.
     pub(super) fn known(s: &Signals) -> Option<Self> {
         match &s.terrain {
             Terrain::Flat => Some(Self::default()),
+            Terrain::Plane(_) if s.heads_unknown_on_slope() => None,
             Terrain::Plane(plane) => Some(Self { rise: plane.rise }),
             Terrain::Grid(_) => None,
         }
@@ -88,6 +90,9 @@ fn along(heading_rad: f64) -> [f64; 2] {
 mod tests {
     use core::f64::consts::FRAC_PI_2;
 
+    use xt28_sim::terrain::Plane;
+
+    use super::super::still::still;
     use super::*;
 
     #[test]
@@ -99,6 +104,18 @@ mod tests {
         assert!(nose_rad.abs() < 1e-12 && (left_rad + 0.1_f64.atan()).abs() < 1e-12);
         assert!((grade.climb(FRAC_PI_2 * 2.0) + 0.1_f64.atan().sin()).abs() < 1e-12);
         assert!((grade.on_map(0.0) - 0.1_f64.atan().cos()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_slope_without_a_heading_says_nothing() {
+        let mut signals = still(2);
+        signals.headings.clear();
+        assert!(Grade::known(&signals).is_some());
+        let plane = Plane { height_m: 0.0, rise: [0.1, 0.0] };
+        signals.terrain = Terrain::Plane(plane);
+        assert_eq!(Grade::known(&signals), None);
+        signals.headings = vec![[0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        assert_eq!(Grade::known(&signals), Some(Grade { rise: [0.1, 0.0] }));
     }
 
     /// Axes turned by both angles in turn stand square on the plane.

@@ -5,10 +5,8 @@ use xt28_sim::Effects;
 
 use super::current_step::{ARM_STEP as STEP, within_step};
 use super::summed::best_sum;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, MANUAL_POSITION, Samples, Signals};
 
-/// The mode in which the PI is at work: manual position.
-const MANUAL_POSITION: f64 = 2.0;
 /// Halvings in the search for what was summed up: to a hundredth of the most.
 const HALVINGS: usize = 3;
 

@@ -28,7 +28,7 @@ pub(super) struct RollingErrors {
     pub(super) ahead_m_s: Samples,
 }
 
-/// A cylinder that carries less may have its wheel in the air, N.
+/// A wheel whose cylinder carries less tells nothing of the machine's speed, N (assumed).
 const CARRYING_N: f64 = 8_000.0;
 /// Torque at which a tyre creeps by as much as else separates two models, Nm (seen on the nominal logs
 /// of a second plant: 0.1 m/s at 10 kNm).
@@ -165,8 +165,12 @@ fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
     let w = &machine.wheels;
     let mut torques_nm: Samples = (0..s.len)
         .step_by(STRIDE)
-        .filter(|&i| s.mean_wheel_speed_rad_s(i) > TRAVELS_RAD_S)
-        .map(|i| 0.5 * (motor_nm(s, machine, Wheel::Fr, i) + motor_nm(s, machine, Wheel::Fl, i)))
+        .map(|i| (i, s.mean_wheel_speed_rad_s(i)))
+        .filter(|(_, speed)| speed.abs() > TRAVELS_RAD_S)
+        .map(|(i, speed)| {
+            let front = motor_nm(s, machine, Wheel::Fr, i) + motor_nm(s, machine, Wheel::Fl, i);
+            0.5 * front * speed.signum()
+        })
         .filter(|nm| nm.is_finite())
         .collect();
     if torques_nm.is_empty() {

@@ -19,8 +19,10 @@ pub(super) struct TravelErrors {
     pub(super) wheel_rad_s: PerWheel<Samples>,
 }
 
-/// Time over which fixes give a speed, s.
+/// Time over which fixes give a speed, s, and how far from it two of them may be apart.
 const WINDOW_S: f64 = 1.0;
+const WINDOW_LEAST_S: f64 = 0.9375;
+const WINDOW_MOST_S: f64 = 1.5;
 /// Slower than this a lag of the receiver's own shows more than it moves, m/s.
 const ROLLING_M_S: f64 = 0.2;
 /// Slower than this a course says nothing, m/s.
@@ -48,16 +50,20 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     let lever = effects.sensors.gnss_lever_arm;
     let leans_m = s.antenna_leans_m(|| antenna_leans_m(s, machine));
     let lean_m = |at_s: f64| leans_m[(((at_s - late_s) / DT_S).max(0.0) as usize).min(s.len - 1)];
-    let back = (WINDOW_S * 8.0) as usize;
-    for k in back..s.fixes.len() {
-        let ([t0, x0, y0], [t1, x1, y1]) = (s.fixes[k - back], s.fixes[k]);
+    let holds_s = 1.5 * interval_s(&s.fixes);
+    for (k, &[t1, x1, y1]) in s.fixes.iter().enumerate() {
+        let [t0, x0, y0] = a_window_before(&s.fixes[..=k]);
+        if t1 - t0 < WINDOW_LEAST_S {
+            continue;
+        }
         let (dx, dy) = (x1 - x0, y1 - y0);
         // Over fixes that are missing a heading in the middle says too little.
-        let near = t1 - t0 < 1.5 * WINDOW_S;
+        let near = t1 - t0 < WINDOW_MOST_S;
         let leaning_m = [0, 1].map(|axis| lean_m(t1)[axis] - lean_m(t0)[axis]);
         let heading = s.heading_at(0.5 * (t0 + t1)).filter(|_| near);
         let wheel_m_s = (rolled_at(t1) - rolled_at(t0)) / (t1 - t0);
-        let (from, to) = ((t1 / DT_S) as usize, ((t1 + 0.125) / DT_S) as usize);
+        let until_s = s.fixes.get(k + 1).map_or(f64::INFINITY, |next| next[0]).min(t1 + holds_s);
+        let (from, to) = ((t1 / DT_S) as usize, (until_s / DT_S) as usize);
         let (mut along, mut angle) = (f64::NAN, f64::NAN);
         if let (Some([heading, yaw_rate]), Some(ground)) = (heading, ground) {
             let (sin, cos) = heading.sin_cos();
@@ -79,4 +85,52 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         }
     }
     TravelErrors { speed_m_s: speed, course_rad: course, wheel_rad_s: rolling.wheel_rad_s }
+}
+
+/// The one of `fixes` that is nearest to a window before the last, however often a receiver speaks.
+fn a_window_before(fixes: &[[f64; 3]]) -> [f64; 3] {
+    let last_s = fixes.last().map_or(0.0, |fix| fix[0]);
+    let from_s = last_s - WINDOW_S;
+    let after = fixes.partition_point(|fix| fix[0] < from_s);
+    let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
+    let away = |k: &usize| (fixes[*k][0] - from_s).abs();
+    around
+        .filter(|k| *k < fixes.len())
+        .min_by(|a, b| away(a).total_cmp(&away(b)))
+        .map_or([last_s, f64::NAN, f64::NAN], |k| fixes[k])
+}
+
+/// How far apart most fixes are, s.
+fn interval_s(fixes: &[[f64; 3]]) -> f64 {
+    let mut apart_s: Vec<f64> = fixes.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
+    if apart_s.is_empty() {
+        return 0.0;
+    }
+    let middle = apart_s.len() / 2;
+    *apart_s.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fixes_a_second_apart_are_found_at_any_rate() {
+        for rate_hz in [1.0, 2.0, 5.0, 8.0, 10.0, 20.0] {
+            let fixes: Vec<[f64; 3]> =
+                (0..100).map(|k| [f64::from(k) / rate_hz, 0.0, 0.0]).collect();
+            assert!((interval_s(&fixes) - 1.0 / rate_hz).abs() < 1e-9);
+            for end in 2..fixes.len() {
+                let [from_s, ..] = a_window_before(&fixes[..=end]);
+                let apart_s = fixes[end][0] - from_s;
+                assert!(
+                    (apart_s - WINDOW_S.min(fixes[end][0])).abs() < 1e-9,
+                    "{rate_hz} {apart_s}"
+                );
+            }
+        }
+        // Where fixes are missing, the nearest that there is.
+        let [from_s, ..] = a_window_before(&[[0.0; 3], [0.1; 3], [1.6; 3]]);
+        assert_eq!(from_s, 0.1);
+    }
 }

@@ -10,11 +10,8 @@ use xt28_sim::Effects;
 
 use super::squares::{BLOCK, Squares};
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::generator::{Generator, Residual};
+use crate::diagnosis::generator::{Generator, Residual, STEP_S};
 use crate::diagnosis::signals::Signals;
-
-/// Time between two samples of a residual, s.
-const SAMPLE_S: f64 = 0.1;
 
 /// What every block's signal lacks a tenth of a second ahead, in floors; `NaN` where nothing can be said.
 pub(super) type Ahead = Vec<(Signal, Vec<f64>)>;
@@ -45,7 +42,7 @@ pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> Ahead 
 /// `before` until `since_s`, `after` from then on.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 pub(super) fn splice(before: Ahead, mut after: Ahead, since_s: f64) -> Ahead {
-    let since = (since_s / SAMPLE_S).ceil() as usize;
+    let since = (since_s / STEP_S).ceil() as usize;
     for ((_, after), (_, before)) in after.iter_mut().zip(before) {
         let until = since.min(after.len()).min(before.len());
         after[..until].copy_from_slice(&before[..until]);

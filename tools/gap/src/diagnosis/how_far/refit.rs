@@ -291,7 +291,7 @@ fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
     (at + step * turn.parameter.tolerance).clamp(low, high)
 }
 
-/// Errors of one run.
+/// Errors of one run, each stretch filled up with zeros to a whole block.
 fn errors(course: &Course, machine: &Machine, both: [&Effects; 2], since_s: f64) -> Vec<f64> {
     let floors = floors(Horizon::FiveSeconds);
     let foretold = course.foretell_since(machine, both, since_s, Horizon::FiveSeconds);
@@ -304,6 +304,7 @@ fn errors(course: &Course, machine: &Machine, both: [&Effects; 2], since_s: f64)
                 errors.push(error / CORRELATED.sqrt());
             }
         }
+        errors.resize(errors.len().next_multiple_of(BLOCK * WIDTH), 0.0);
     }
     errors
 }

@@ -1,4 +1,9 @@
 //! Squared errors in units of the floor, kept in blocks of time so that they can be drawn anew.
+//!
+//! Over a whole run errors add up, so blocks of one run are no independent witnesses: there the runs are drawn
+//! first, and blocks within those drawn.
+
+use std::collections::BTreeMap;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -6,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use super::course::{Horizon, Quantity, Row, floors};
 use super::twin::Stretch;
 
-/// Samples of a block: 5 s. Errors further apart are taken for independent.
+/// Samples of a block: 5 s. Errors of one step and of 5 s that are further apart are taken for independent.
 pub(super) const BLOCK: usize = 50;
 /// What a number that is not one counts for, floors: a machine that was thrown about.
 const LOST: f64 = 1.0e3;
@@ -18,13 +23,15 @@ const SEED: u64 = 0x0078_7432_3867_6170;
 /// Squared errors of one block of time, signal by signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Squares {
+    /// Which run the block is of.
+    pub(super) run: usize,
     pub(super) sum: Vec<f64>,
     pub(super) count: Vec<f64>,
 }
 
 impl Squares {
     pub(super) fn new(signals: usize) -> Self {
-        Self { sum: vec![0.0; signals], count: vec![0.0; signals] }
+        Self { run: 0, sum: vec![0.0; signals], count: vec![0.0; signals] }
     }
 
     /// Counts one error of `signal`, in floors.
@@ -86,15 +93,35 @@ pub(super) fn by_signal(blocks: &[Squares]) -> Vec<f64> {
     total.sum.iter().zip(&total.count).map(|(sum, count)| (sum / count.max(1.0)).sqrt()).collect()
 }
 
-/// Shrink from `before` to `after`, and its 90 % interval over draws of their blocks.
+/// Shrink from `before` to `after`, and its 90 % interval over draws of their blocks, each run's by themselves.
 pub(super) fn shrink(before: &[Squares], after: &[Squares]) -> (f64, [f64; 2]) {
+    let all: Vec<usize> = (0..before.len()).collect();
+    shrink_of([before, after], &[all])
+}
+
+/// The same over draws of whole runs, and of blocks within each.
+pub(super) fn shrink_by_run(before: &[Squares], after: &[Squares]) -> (f64, [f64; 2]) {
+    let mut runs: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    before.iter().enumerate().for_each(|(k, block)| runs.entry(block.run).or_default().push(k));
+    shrink_of([before, after], &runs.into_values().collect::<Vec<_>>())
+}
+
+/// Shrink over all blocks, and its 90 % interval over draws of `clusters` and of blocks within those.
+fn shrink_of([before, after]: [&[Squares]; 2], clusters: &[Vec<usize>]) -> (f64, [f64; 2]) {
     let of = |before: f64, after: f64| if before > 0.0 { 1.0 - after / before } else { 0.0 };
     let whole = of(gap(before), gap(after));
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
     let mut draws: Vec<f64> = (0..DRAWS)
         .map(|_| {
-            let drawn: Vec<usize> =
-                before.iter().map(|_| random.random_range(0..before.len())).collect();
+            let mut drawn: Vec<usize> = Vec::with_capacity(before.len());
+            for _ in clusters {
+                let cluster = match clusters.len() {
+                    1 => &clusters[0],
+                    n => &clusters[random.random_range(0..n)],
+                };
+                drawn
+                    .extend(cluster.iter().map(|_| cluster[random.random_range(0..cluster.len())]));
+            }
             let gap = |all: &[Squares]| total(drawn.iter().map(|&k| &all[k])).gap();
             of(gap(before), gap(after))
         })
@@ -154,5 +181,21 @@ mod tests {
         let (estimate, wide) = shrink(&before, &blocks(&uneven));
         assert!(wide[0] < estimate && estimate < wide[1] && wide[1] - wide[0] > 0.1);
         assert_eq!(shrink(&before, &blocks(&uneven)), (estimate, wide));
+    }
+
+    #[test]
+    fn two_runs_that_differ_are_two_witnesses_and_not_twelve() {
+        let of = |errors: [f64; 2]| {
+            let each: Vec<f64> = (0..12).map(|k| errors[k / 6]).collect();
+            let mut all = blocks(&each);
+            all.iter_mut().enumerate().for_each(|(k, block)| block.run = 3 + k / 6);
+            all
+        };
+        let (before, after) = (of([2.0, 2.0]), of([0.2, 1.8]));
+        let ((estimate, by_block), (same, by_run)) =
+            (shrink(&before, &after), shrink_by_run(&before, &after));
+        assert!((estimate - same).abs() < 1e-12);
+        assert!((by_run[0] - 0.1).abs() < 1e-9 && (by_run[1] - 0.9).abs() < 1e-9, "{by_run:?}");
+        assert!(by_block[0] > 0.15 && by_block[1] < 0.85, "{by_block:?}");
     }
 }

@@ -2,10 +2,8 @@
 
 use xt28_machine::Machine;
 
+use crate::diagnosis::generator::STEER_WINDUP_DEG_S;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
-
-/// Limit of the steering integral, deg s (the machine's conventions).
-const WINDUP_DEG_S: f64 = 40.0;
 
 /// The angles of both joints as the controller would have them from the command alone, rad, on a machine without
 /// a fault. A machine that drives as its log begins has turned by then as it was told.
@@ -22,7 +20,7 @@ pub(super) fn commanded_rad(s: &Signals, machine: &Machine) -> [Samples; 2] {
             if drives(s, machine, i) {
                 let error_deg = targets_deg[k] - angles_deg[k];
                 let sum_deg_s = sums_deg_s[k] + error_deg * DT_S;
-                sums_deg_s[k] = sum_deg_s.clamp(-WINDUP_DEG_S, WINDUP_DEG_S);
+                sums_deg_s[k] = sum_deg_s.clamp(-STEER_WINDUP_DEG_S, STEER_WINDUP_DEG_S);
                 let opening = a.kp_per_deg * (error_deg + a.ki_per_s * sums_deg_s[k]);
                 angles_deg[k] += a.rate_max_deg_s * opening.clamp(-1.0, 1.0) * DT_S;
             } else {

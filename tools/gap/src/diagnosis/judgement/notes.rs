@@ -6,7 +6,7 @@ use super::super::floor::Signal;
 use super::super::floors::Floors;
 use super::super::hypothesis::Fit;
 use super::super::inquiry::Inquiry;
-use super::super::signals::{PERIOD_S, command_period_s};
+use super::super::signals::{PERIOD_S, command_periods_s};
 use super::super::verdict::Verdict;
 use super::super::wheel_order::axles_alike;
 use super::objection::Objection;
@@ -24,6 +24,7 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
     notes.extend(commanded_seldom(inquiry));
+    notes.extend(slopes_unseen(inquiry));
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
     let alike = axles_alike(inquiry.runs.iter().map(|run| &run.signals));
     if !alike.is_empty() {
@@ -45,14 +46,32 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
 /// Runs whose commands come less often than the wire contract has it.
 fn commanded_seldom(inquiry: &Inquiry) -> Option<String> {
     let seldom = inquiry.runs.iter().filter_map(|run| {
-        let period_s = command_period_s(&run.signals);
-        (period_s > PERIOD_S).then(|| format!("every {:.0} ms in {}", period_s * 1e3, run.file()))
+        let [arms, drive] = command_periods_s(&run.signals).map(|period_s| 1e3 * period_s);
+        let told = if (arms - drive).abs() < 0.5 {
+            format!("every {arms:.0} ms")
+        } else {
+            format!("every {arms:.0} ms (arms) and {drive:.0} ms (drive)")
+        };
+        (arms.max(drive) > 1e3 * PERIOD_S).then(|| format!("{told} in {}", run.file()))
     });
     let seldom: Vec<String> = seldom.collect();
     (!seldom.is_empty()).then(|| {
         let told = seldom.join(", ");
         format!(
             "commands come {told}, and not every 10 ms: their loss and lateness are judged by that"
+        )
+    })
+}
+
+/// Runs on a slope without a word on which way the machine heads.
+fn slopes_unseen(inquiry: &Inquiry) -> Option<String> {
+    let unseen = inquiry.runs.iter().filter(|run| run.signals.heads_unknown_on_slope());
+    let unseen: Vec<String> = unseen.map(|run| run.file()).collect();
+    (!unseen.is_empty()).then(|| {
+        let runs = unseen.join(", ");
+        format!(
+            "the ground of {runs} slopes and no receiver says which way the machine heads on it, so how it stands and \
+             what drives it is not judged there: log the receiver's heading"
         )
     })
 }

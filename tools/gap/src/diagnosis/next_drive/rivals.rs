@@ -24,6 +24,8 @@ pub(super) struct Rival {
     /// All that is believed with it.
     pub(super) effects: Effects,
     cause: Option<(Hypothesis, Vec<f64>)>,
+    /// When it begins in the runs driven, s.
+    from_s: f64,
 }
 
 /// A cause at some wheels, and how likely it is to be there.
@@ -63,7 +65,8 @@ pub(super) fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> (Effects, Vec<
     places.truncate(RIVALS);
     let mut rivals: Vec<Rival> = places.iter().map(|place| place.rival(&base, &places)).collect();
     if diagnosis.probability_none >= WORTH_TELLING {
-        rivals.push(Rival { name: "none".to_owned(), effects: base.clone(), cause: None });
+        let effects = base.clone();
+        rivals.push(Rival { name: "none".to_owned(), effects, cause: None, from_s: 0.0 });
     }
     (base, rivals)
 }
@@ -102,14 +105,15 @@ impl<'a> Place<'a> {
         let is_alone = all.iter().filter(|other| other.cause.effect.name == name).count() == 1;
         let name = if is_alone { name.to_owned() } else { format!("{name} ({})", self.scope) };
         let hypothesis = Hypothesis { effect: self.cause.effect, scope: self.scope };
-        Rival { name, effects, cause: Some((hypothesis, self.values.clone())) }
+        let from_s = self.cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
+        Rival { name, effects, cause: Some((hypothesis, self.values.clone())), from_s }
     }
 }
 
 impl Rival {
-    /// It, as a belief.
+    /// It, as a belief on the runs driven.
     pub(super) fn belief(&self) -> Belief<'_> {
-        (&self.effects).into()
+        Belief { effects: &self.effects, from_s: self.from_s }
     }
 
     /// The least that `cost` makes of it beside `base`, with what one has to believe for its parameters.
@@ -119,7 +123,10 @@ impl Rival {
         };
         let Hypothesis { effect, scope } = *hypothesis;
         let only = |generator: Generator| generator.hears(effect, scope);
-        let of = |values: &[f64]| cost((&hypothesis.applied(base, values)).into(), &only);
+        let of = |values: &[f64]| {
+            let effects = &hypothesis.applied(base, values);
+            cost(Belief { effects, from_s: self.from_s }, &only)
+        };
         hypothesis.least(&of, values)
     }
 }

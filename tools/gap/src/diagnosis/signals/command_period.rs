@@ -2,18 +2,21 @@
 
 use super::Signals;
 
-/// Period of the two commands, s (the wire contract).
+/// Period of either command, s (the wire contract).
 pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
 /// Commands that mostly come this many periods apart or more are of a gateway that has another: a bus that
 /// loses a third of them leaves most where they were.
 const ANOTHER: f64 = 1.5;
 
-/// The period of the commands of a run, s: that of the wire contract, or what most of them are apart where
-/// that is more by half.
+/// The periods of the commands to the arms and to the drive of a run, s: that of the wire contract, or what
+/// most of them are apart where that is more by half.
 #[must_use]
-pub(in crate::diagnosis) fn command_period_s(signals: &Signals) -> f64 {
-    let each = signals.command_times_s.iter().flat_map(|times| times.windows(2));
-    let mut apart_s: Vec<f64> = each.map(|pair| pair[1] - pair[0]).collect();
+pub(in crate::diagnosis) fn command_periods_s(signals: &Signals) -> [f64; 2] {
+    signals.command_times_s.each_ref().map(|times_s| period_s(times_s))
+}
+
+fn period_s(times_s: &[f64]) -> f64 {
+    let mut apart_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     if apart_s.is_empty() {
         return PERIOD_S;
     }

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use super::{AllSeries, Signals};
-use crate::{Channel, Series};
+use crate::{Channel, Series, Terrain};
 
 /// Time between two headings beyond which nothing is said in between, s: a machine that steers has turned
 /// by some degrees meanwhile (a receiver tells eight a second).
@@ -17,6 +17,13 @@ impl Signals {
     #[must_use]
     pub fn heading_at(&self, at_s: f64) -> Option<[f64; 2]> {
         between(&self.headings, at_s)
+    }
+
+    /// Whether the ground is known to slope while nobody says which way the machine heads on it.
+    #[must_use]
+    pub(in crate::diagnosis) fn heads_unknown_on_slope(&self) -> bool {
+        let slopes = matches!(&self.terrain, Terrain::Plane(plane) if plane.rise != [0.0; 2]);
+        slopes && self.headings.is_empty()
     }
 
     /// Heading at `at_s` or, where none is known, the one told nearest to it, rad; none without any.

@@ -76,6 +76,8 @@ pub struct DriveOutput {
     pub pump_pressure_pa: [f64; 4],
     /// Power taken from the engine, W.
     pub power_w: f64,
+    /// Share of the wanted power that the engine gives, 0 to 1.
+    pub power_share: f64,
     /// Speed of the engine under that load, rpm.
     pub engine_speed_rpm: f64,
     /// Torque with which each motor holds its wheel at rest, Nm.
@@ -218,7 +220,7 @@ impl Drive {
             .min(self.engine_torque_max_nm * shaft_rad_s);
         let limit = if wanted_w > most_w { most_w / wanted_w } else { 1.0 };
         out.wheel_torque_nm = out.wheel_torque_nm.map(|nm| nm * limit);
-        out.power_w = wanted_w * limit;
+        (out.power_w, out.power_share) = (wanted_w * limit, limit);
         limit
     }
 

@@ -25,6 +25,9 @@ pub struct Hypothesis {
     pub scope: Scope,
 }
 
+/// Share of a standard deviation by which one fit is of another size than another.
+const PARTS: f64 = 0.25;
+
 /// A hypothesis with its parameters at their best.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -41,15 +44,15 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Whether it is another one than `other`: elsewhere, of another beginning, or of another size than either
-    /// is known to.
+    /// Whether it is another one than `other`: elsewhere, of another beginning, or of another size by a share of
+    /// what either is known to.
     #[must_use]
     pub(super) fn parts_from(&self, other: &Self) -> bool {
         let known = self.sigma.iter().zip(&other.sigma).map(|(a, b)| a.max(*b));
         let mut sizes = self.values.iter().zip(&other.values).zip(known);
         self.hypothesis != other.hypothesis
             || (self.from_s - other.from_s).abs() > f64::EPSILON
-            || sizes.any(|((a, b), sigma)| (a - b).abs() > sigma)
+            || sizes.any(|((a, b), sigma)| (a - b).abs() > PARTS * sigma)
     }
 }
 

@@ -22,9 +22,9 @@ const BEGUN_SIGMA: f64 = 2.0;
 const BARELY: f64 = 2.0e-3;
 /// What it must gain with the values of an effect that was always there, nats; else it is not asked.
 const BEGINNING_HINT: f64 = 2.0;
-/// How far from the beginning that explains the runs fitted best another may be that they leave open, and
-/// how far apart those that are tried are, s: nothing of it shows until a machine moves.
-const OPEN_FOR_S: [f64; 2] = [3.0, 0.1];
+/// How far apart beginnings that the runs fitted may leave open are tried, s, first all over a run and then about
+/// the best: nothing of it shows until a machine moves.
+const OPEN_STEPS_S: [f64; 2] = [0.5, 0.1];
 /// Beginnings that explain as much but for this are alike, nats: the one in their middle is told.
 const ALIKE: f64 = 0.1;
 /// The widest and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
@@ -71,21 +71,30 @@ impl Docket<'_> {
     pub(super) fn begun_for_all(&self, found: &Candidate) -> Option<Candidate> {
         let Fit { hypothesis, from_s, ref values, .. } = found.fit;
         let held = self.held.as_ref().filter(|_| from_s > 0.0)?;
-        let [reach_s, step_s] = OPEN_FOR_S;
-        let count = (2.0 * reach_s / step_s).round() as usize;
-        let instants = (0..=count).map(|k| from_s - reach_s + k as f64 * step_s);
-        let instants: Vec<f64> = instants.filter(|at_s| *at_s > 0.0).collect();
-        let gains = |evidence| hypothesis.onset_gains(evidence, &instants, values);
         let here = hypothesis.gain(&self.fit, from_s, values);
         let least = here * (1.0 - OPEN[1]) - OPEN[0];
-        let each = instants.iter().zip(gains(&self.fit).into_iter().zip(gains(held)));
-        let open = each.filter(|(_, (fitted, _))| *fitted > least);
-        let both: Vec<(f64, f64)> =
-            open.map(|(at_s, (fitted, held))| (*at_s, fitted + held)).collect();
-        let most = both.iter().map(|(_, gain)| *gain).fold(f64::NEG_INFINITY, f64::max);
-        let best: Vec<f64> =
-            both.iter().filter(|(_, gain)| *gain > most - ALIKE).map(|(at_s, _)| *at_s).collect();
-        let at_s = *best.get(best.len() / 2)?;
+        // The middle of those within `reach_s` of `about_s` that suit all runs best.
+        let best = |about_s: f64, reach_s: f64, step_s: f64| -> Option<f64> {
+            let count = (2.0 * reach_s / step_s).round() as usize;
+            let instants = (0..=count).map(|k| about_s - reach_s + k as f64 * step_s);
+            let within = |at_s: &f64| *at_s > 0.0 && *at_s <= SETS_IN_S[SETS_IN_S.len() - 1];
+            let instants: Vec<f64> = instants.filter(within).collect();
+            let gains = |evidence| hypothesis.onset_gains(evidence, &instants, values);
+            let each = instants.iter().zip(gains(&self.fit).into_iter().zip(gains(held)));
+            let open = each.filter(|(_, (fitted, _))| *fitted > least);
+            let both: Vec<(f64, f64)> =
+                open.map(|(at_s, (fitted, held))| (*at_s, fitted + held)).collect();
+            let most = both.iter().map(|(_, gain)| *gain).fold(f64::NEG_INFINITY, f64::max);
+            let best: Vec<f64> = both
+                .iter()
+                .filter(|(_, gain)| *gain > most - ALIKE)
+                .map(|(at_s, _)| *at_s)
+                .collect();
+            best.get(best.len() / 2).copied()
+        };
+        let [coarse_s, fine_s] = OPEN_STEPS_S;
+        let about_s = best(from_s, SETS_IN_S[SETS_IN_S.len() - 1], coarse_s)?;
+        let at_s = best(about_s, 3.0, fine_s)?;
         let moved = self.weighed(hypothesis.refit(&self.fit, at_s, values));
         (moved.score() > found.score()).then_some(moved)
     }

@@ -80,7 +80,11 @@ fn pressure_errors(
             let over = circuits_pa(signals, i);
             let parts = [p[1] - p[0] - over[0], p[3] - p[2] - over[1]];
             common_pa = (parts[0] + parts[1]) / 2.0;
-            difference_pa = (parts[0] - parts[1]) / 2.0;
+            difference_pa = difference_error_pa(
+                (p[1] - p[0] - p[3] + p[2]) / 2.0,
+                (over[0] - over[1]) / 2.0,
+                out.power_share,
+            );
             let share = (since_s / DRAWN_S).min(1.0);
             state.mean_torque_nm -= share * nm_per_pa * common_pa;
             since_s = 0.0;
@@ -89,6 +93,15 @@ fn pressure_errors(
         errors.difference_pa.push(difference_pa);
     }
     (errors, idle_nm)
+}
+
+/// What the circuits' pressures differ by less what they were `measured` to, Pa, where the engine gives a share
+/// of what is wanted: how pumps that swing back for it share that between them is a matter of makes, from both
+/// alike to one alone.
+fn difference_error_pa(difference_pa: f64, measured_pa: f64, power_share: f64) -> f64 {
+    let wanted_pa = difference_pa / power_share.max(f64::MIN_POSITIVE);
+    let [low, high] = [difference_pa.min(wanted_pa), difference_pa.max(wanted_pa)];
+    measured_pa.clamp(low, high) - measured_pa
 }
 
 /// Wheel speeds at sample `i`, as they are behind sensors that read in proportion too much: the oil
@@ -160,6 +173,16 @@ fn force_error_nm(
 mod tests {
     use super::super::still::still;
     use super::*;
+
+    #[test]
+    fn how_two_pumps_share_a_short_engine_is_left_open_and_nothing_else_is() {
+        // Held back to a half: between what both alike would leave of 8 bar and all of them.
+        let of = |measured_pa| difference_error_pa(4.0e5, measured_pa, 0.5);
+        assert_eq!([of(4.0e5), of(6.0e5), of(8.0e5)], [0.0; 3]);
+        assert_eq!([of(3.0e5), of(9.0e5)], [1.0e5, -1.0e5]);
+        assert_eq!(difference_error_pa(-4.0e5, -7.0e5, 0.5), 0.0);
+        assert_eq!(difference_error_pa(4.0e5, 5.0e5, 1.0), -1.0e5);
+    }
 
     /// Largest torque not accounted for, Nm, of a machine that goes on by itself from 5 s on, faster by `gains_m_s2`,
     /// while nothing is asked of its motors.

@@ -9,9 +9,7 @@ use xt28_sim::effects::Effect;
 
 use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left, Uneven};
-use super::hypothesis::Fit;
-#[cfg(test)]
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
 use super::overlap::Paid;
 use super::search::search;
@@ -210,6 +208,25 @@ impl<'a> Docket<'a> {
             effects = fit.hypothesis.applied(&effects, &fit.values);
         }
         (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
+    }
+
+    /// The effect of the best one at other scopes, from its own values: on more wheels, as of six that were looked
+    /// at from a grid's values one alone may have come into its valley; and where it sets in late on all
+    /// others too, as only one scope's beginning may have been close to one that was looked at.
+    fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
+        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
+        let is_on = |other: &Hypothesis, w| other.scope.contains(w);
+        let has_more = |other: &Hypothesis| {
+            Wheel::ALL.into_iter().all(|w| !is_on(&hypothesis, w) || is_on(other, w))
+        };
+        let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
+        let asked = |other: &Hypothesis| *other != hypothesis && (from_s > 0.0 || has_more(other));
+        let others = others.filter(asked).map(|other| {
+            let found = self.weighed(other.refit(&self.fit, from_s, values));
+            let later = if from_s > 0.0 { self.set_in(&found) } else { None };
+            later.unwrap_or(found)
+        });
+        others.filter(|other| other.score() > best.score()).collect()
     }
 
     /// The same candidate at the floor of its valley, where it is worth more there.

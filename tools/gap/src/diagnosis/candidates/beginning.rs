@@ -1,10 +1,9 @@
 //! When an effect sets in: not before some instant of every run.
 
-use rayon::prelude::*;
 use xt28_sim::effects::{Block, Parameter};
 
 use super::super::evidence::Evidence;
-use super::super::hypothesis::{Fit, Hypothesis};
+use super::super::hypothesis::Fit;
 use super::{Candidate, Docket, OPEN};
 
 /// Instants of every run at which an effect may set in, s.
@@ -32,21 +31,6 @@ const ALIKE: f64 = 0.1;
 const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.03];
 
 impl Docket<'_> {
-    /// The effect of one that sets in late on all other wheels from there on: only one scope's beginning
-    /// may have been close to one that was looked at.
-    pub(super) fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
-        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
-        if from_s == 0.0 {
-            return Vec::new();
-        }
-        let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
-        let others = others.filter(|other| *other != hypothesis).map(|other| {
-            let found = self.weighed(other.refit(&self.fit, from_s, values));
-            self.set_in(&found).unwrap_or(found)
-        });
-        others.filter(|other| other.score() > best.score()).collect()
-    }
-
     /// The same candidate setting in late, where that is worth it; one that does, at a better instant.
     pub(super) fn set_in(&self, found: &Candidate) -> Option<Candidate> {
         let Fit { hypothesis, from_s, .. } = found.fit;

@@ -160,13 +160,16 @@ fn driven_hard(machine: &Machine) -> String {
     states
 }
 
-/// The log and the truth of a closed loop.
+/// The log and the truth of a closed loop, or why the machine refuses the script.
 fn closed_loop(machine: &Machine, scenario: &str, script: &str) -> String {
     let read = |_: &Path| Ok(script.to_owned());
     let scenario = Scenario::parse(scenario, Path::new("t.toml"), read).unwrap();
     let mut setup = Setup::new(scenario, None).unwrap();
     (setup.machine, setup.solver) = (machine.clone(), Solver::Reduced);
-    let mut run = Lockstep::new(&setup, io::sink()).unwrap();
+    let mut run = match Lockstep::new(&setup, io::sink()) {
+        Ok(run) => run,
+        Err(error) => return error.to_string(),
+    };
     while run.tick(&mut || Duration::ZERO).unwrap().is_some() {}
     let recording = run.finish().unwrap();
     format!("{} {:?}", recording.log_sha256, recording.truth)

@@ -24,7 +24,8 @@ impl Departures {
     }
 
     /// The frames that left since the last call, where `left` have in all and `still_wait` wait. The socket
-    /// throws away all that wait or nothing, so the newest are those that still do.
+    /// throws away all that wait or nothing, so the newest are those that still do. To be asked before each
+    /// frame that is added: one that leaves at once is else taken for one that was thrown away.
     pub(crate) fn settle(&mut self, left: u64, still_wait: usize) -> Vec<Frame> {
         let now = usize::try_from(left.saturating_sub(self.left)).unwrap_or(usize::MAX);
         self.left = left;
@@ -62,5 +63,10 @@ mod tests {
         assert!(departures.wait());
         assert_eq!(numbers(&departures.settle(3, 0)), [5]);
         assert!(!departures.wait());
+        // Thrown away, and the next one leaves at once: asked in between, it is not taken for the old one.
+        departures.add(&frame(6));
+        assert_eq!(numbers(&departures.settle(3, 0)), [0; 0]);
+        departures.add(&frame(7));
+        assert_eq!(numbers(&departures.settle(4, 0)), [7]);
     }
 }

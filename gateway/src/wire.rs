@@ -61,6 +61,8 @@ impl Wire {
             // One frame at a time asks whether it takes any again.
             self.socket.discard_backlog();
         }
+        // What was thrown away since the last call is forgotten before another frame leaves in its place.
+        self.settle(now)?;
         match self.socket.send(now, frame) {
             Ok(()) => self.departures.add(frame),
             Err(SocketError::BacklogFull { .. }) => {

@@ -335,6 +335,14 @@ pub(super) fn smooth(raw: &Samples) -> Samples {
     moving_mean(&moving_mean(raw, 0.3), 0.3)
 }
 
+/// The value in the middle of all, the greater of the two in the middle; none of nothing.
+#[must_use]
+pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Samples = values.collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
 /// Mean over `window_s` around each sample; shorter at the ends.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]

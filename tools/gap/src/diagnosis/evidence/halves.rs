@@ -9,7 +9,7 @@ use xt28_machine::Wheel;
 
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::{Generator, STEP_S};
-use crate::diagnosis::signals::{DT_S, Signals};
+use crate::diagnosis::signals::{DT_S, Signals, median};
 
 /// An opening below this is a shut valve.
 pub(in crate::diagnosis) const SHUT: f64 = 0.01;
@@ -149,7 +149,8 @@ pub(super) struct Scene<'a> {
 impl<'a> Scene<'a> {
     pub(super) fn new(generator: Generator, signals: &'a Signals) -> Self {
         let middle = |wheel: Wheel| {
-            [&signals.cylinder_load_n[wheel], &signals.stroke_m[wheel]].map(|all| middle_of(all))
+            [&signals.cylinder_load_n[wheel], &signals.stroke_m[wheel]]
+                .map(|all| median(all.iter().copied()).unwrap_or(f64::NAN))
         };
         Self { generator, signals, middle: generator.wheel().map_or([f64::NAN; 2], middle) }
     }
@@ -194,16 +195,6 @@ impl<'a> Scene<'a> {
             _ => s.mean_wheel_speed_rad_s(i).abs() > FAST_RAD_S,
         })
     }
-}
-
-/// The value in the middle of all.
-fn middle_of(all: &[f64]) -> f64 {
-    let mut sorted = all.to_vec();
-    let middle = sorted.len() / 2;
-    if middle == sorted.len() {
-        return f64::NAN;
-    }
-    *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

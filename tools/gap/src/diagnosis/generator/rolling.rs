@@ -16,7 +16,7 @@ use super::press::{normal_n, own_n, rolling_radius_m};
 use super::stance::{Held, Holds};
 use super::traction::Traction;
 use crate::diagnosis::kinematics::Kinematics;
-use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals, median};
 use creep::{creeping, creeps_at_most};
 
 /// What rolling leaves open; `NaN` where nothing can be said.
@@ -163,7 +163,7 @@ pub fn share_resistance<'a>(runs: impl Iterator<Item = &'a mut Signals>, machine
 /// while it travels. Tyres creep by it as by a motor's, and where arms swing at standstill by it alone.
 fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
     let w = &machine.wheels;
-    let mut torques_nm: Samples = (0..s.len)
+    let torques_nm = (0..s.len)
         .step_by(STRIDE)
         .map(|i| (i, s.mean_wheel_speed_rad_s(i)))
         .filter(|(_, speed)| speed.abs() > TRAVELS_RAD_S)
@@ -171,13 +171,8 @@ fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
             let front = motor_nm(s, machine, Wheel::Fr, i) + motor_nm(s, machine, Wheel::Fl, i);
             0.5 * front * speed.signum()
         })
-        .filter(|nm| nm.is_finite())
-        .collect();
-    if torques_nm.is_empty() {
-        return 0.0;
-    }
-    let middle = torques_nm.len() / 2;
-    let median_nm = *torques_nm.select_nth_unstable_by(middle, f64::total_cmp).1;
+        .filter(|nm| nm.is_finite());
+    let Some(median_nm) = median(torques_nm) else { return 0.0 };
     let weight_nm = machine.mass_kg() * GRAVITY_M_S2 * w.radius_m / 6.0;
     (median_nm - ORDINARY * w.rolling_resistance * weight_nm).max(0.0)
 }

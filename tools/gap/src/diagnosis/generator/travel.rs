@@ -6,7 +6,7 @@ use xt28_sim::Effects;
 use super::grade::Grade;
 use super::rolling::rolling_errors;
 use super::stance::antenna_leans_m;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals, median};
 
 /// Errors of rolling over a run; `NaN` where nothing can be said.
 #[derive(Clone, Debug, Default)]
@@ -102,12 +102,7 @@ fn a_window_before(fixes: &[[f64; 3]]) -> [f64; 3] {
 
 /// How far apart most fixes are, s.
 fn interval_s(fixes: &[[f64; 3]]) -> f64 {
-    let mut apart_s: Vec<f64> = fixes.windows(2).map(|pair| pair[1][0] - pair[0][0]).collect();
-    if apart_s.is_empty() {
-        return 0.0;
-    }
-    let middle = apart_s.len() / 2;
-    *apart_s.select_nth_unstable_by(middle, f64::total_cmp).1
+    median(fixes.windows(2).map(|pair| pair[1][0] - pair[0][0])).unwrap_or_default()
 }
 
 #[cfg(test)]

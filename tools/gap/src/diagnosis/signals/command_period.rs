@@ -1,6 +1,6 @@
 //! How far apart commands are sent.
 
-use super::Signals;
+use super::{Signals, median};
 
 /// Period of either command, s (the wire contract).
 pub(in crate::diagnosis) const PERIOD_S: f64 = 0.01;
@@ -16,12 +16,7 @@ pub(in crate::diagnosis) fn command_periods_s(signals: &Signals) -> [f64; 2] {
 }
 
 fn period_s(times_s: &[f64]) -> f64 {
-    let mut apart_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if apart_s.is_empty() {
-        return PERIOD_S;
-    }
-    let middle = apart_s.len() / 2;
-    let (_, median_s, _) = apart_s.select_nth_unstable_by(middle, f64::total_cmp);
-    let whole_s = (*median_s * 1e3).round() * 1e-3;
+    let apart_s = median(times_s.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(PERIOD_S);
+    let whole_s = (apart_s * 1e3).round() * 1e-3;
     if whole_s > ANOTHER * PERIOD_S { whole_s } else { PERIOD_S }
 }

@@ -9,7 +9,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine};
 
 use super::lean::planes;
 use super::motion::Motion;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals, median};
 
 /// Share of the turned angle that the filter keeps a tick: 2 s for roll, 1 s for pitch (facts 5).
 const KEEP: [f64; 2] = [0.995, 0.99];
@@ -88,7 +88,8 @@ impl Felt {
     /// What a filter reads beside the lean, by the one that `reading` speaks for.
     fn beside_lean_rad(&self, reading: &Samples) -> Samples {
         let whole = self.filtered(0.0, |angle| angle);
-        let offset_rad = median(reading.iter().zip(&whole).map(|(read, angle)| read - angle));
+        let offset_rad = median(reading.iter().zip(&whole).map(|(read, angle)| read - angle))
+            .unwrap_or_default();
         let cut = self.filtered(offset_rad, |angle| (angle / UNIT_RAD).trunc() * UNIT_RAD);
         let cut: Samples = cut.iter().map(|angle| angle - offset_rad).collect();
         let is_cut = left(reading, &cut) < MUCH_NEARER * left(reading, &whole);
@@ -115,17 +116,8 @@ impl Felt {
 /// Sum of the squares of what `filtered` leaves of a reading about its middle.
 fn left(reading: &Samples, filtered: &Samples) -> f64 {
     let apart = || reading.iter().zip(filtered).map(|(read, angle)| read - angle);
-    let middle = median(apart());
+    let middle = median(apart()).unwrap_or_default();
     apart().map(|error| (error - middle).powi(2)).sum()
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Samples = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

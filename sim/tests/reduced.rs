@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_machine::{Axle, GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
 use xt28_sim::terrain::{Extent, Grid};
 use xt28_sim::{
     Actuation, Bodies, Effects, Plant, Ramp, RapierBodies, ReducedBodies, Terrain, Vehicle,
@@ -159,6 +159,47 @@ fn a_front_frame_that_may_roll_rolls_as_in_the_reference() {
     assert!(apart(&stopped, &reference) > 0.5, "{} degrees of stop", apart(&stopped, &reference));
     let apart = apart(&stopped_fast, &stopped);
     assert!(apart < 0.05, "{apart} degrees apart at the stop");
+}
+
+/// A machine with a roll hinge, on which diagonal arms part, stood for 4 s and then bent and driven.
+fn bent_states<B: Bodies>() -> Vec<VehicleState> {
+    let mut machine = Machine::xt28();
+    machine.vehicle.roll_hinge = true;
+    machine.vehicle.roll_hinge_stiffness_nm = 2.0e5;
+    let diagonal = |w: Wheel| match (w.axle(), w.side()) {
+        (Axle::Middle, _) => 0.0,
+        (Axle::Front, Side::Left) | (Axle::Rear, Side::Right) => 0.3,
+        _ => -0.3,
+    };
+    let bend = |t: f64| Actuation {
+        pump_displacement: [(t / 2.0).min(1.0); 2],
+        steer_opening: if t < 4.0 { [0.5, 0.3] } else { [0.0; 2] },
+        arm_opening: if t < 3.0 { PerWheel::from_fn(diagonal) } else { PerWheel::splat(0.0) },
+        ..idle()
+    };
+    run(&mut settled_machine::<B>(&machine, &Terrain::Flat, 200), 200, 10.0, bend)
+}
+
+#[test]
+fn a_roll_hinge_stays_with_the_front_frame_in_a_bend_as_in_the_reference() {
+    let [reference, fast] = [bent_states::<RapierBodies>(), bent_states::<ReducedBodies>()];
+    let most = |of: &dyn Fn(&VehicleState) -> f64| fast.iter().map(of).fold(0.0, f64::max);
+    let hinge_deg = most(&|s| s.roll_hinge_rad.abs().to_degrees());
+    let joint_deg = most(&|s| s.joint_rad[0].abs().to_degrees());
+    assert!(hinge_deg > 3.0 && joint_deg > 20.0, "{hinge_deg} and {joint_deg} degrees");
+    for (a, b) in reference.iter().zip(&fast) {
+        let apart = [a.roll_rad - b.roll_rad, a.pitch_rad - b.pitch_rad];
+        let apart_deg = apart.map(|rad| rad.abs().to_degrees());
+        assert!(apart_deg.iter().all(|deg| *deg < 0.5), "{apart_deg:?} degrees apart");
+    }
+    let carried = |states: &[VehicleState]| states.last().unwrap().ground_force_n;
+    let [one, other] = [carried(&reference), carried(&fast)];
+    for wheel in Wheel::ALL {
+        let apart_n = (one[wheel] - other[wheel]).abs();
+        assert!(apart_n < 1500.0, "{wheel}: {apart_n} N apart");
+    }
+    // What joins the frames there weighs nothing of its own.
+    assert!((one.sum() - other.sum()).abs() < 100.0, "{} and {} N", one.sum(), other.sum());
 }
 
 #[test]

@@ -59,7 +59,7 @@ impl Bodies for RapierBodies {
                     InteractionTestMode::And,
                 )),
         );
-        let (frames, turned) = insert_frames(parts, &mut world);
+        let (frames, rolled) = insert_frames(parts, &mut world);
         let arms = PerWheel::from_fn(|wheel| insert_arm(parts, &mut world, &frames, wheel));
         let hulls = core::array::from_fn(|i| HullWatch::new(&mut world, frames[i], parts, i));
         let mut bodies = Self {
@@ -81,7 +81,7 @@ impl Bodies for RapierBodies {
             chassis_force_n: 0.0,
         };
         bodies.free_root();
-        bodies.index_hinges(turned, parts.roll_hinge);
+        bodies.index_hinges(rolled.zip(parts.roll_hinge));
         bodies.set_down(parts, terrain, stroke_m);
         bodies
     }
@@ -328,15 +328,15 @@ impl RapierBodies {
     }
 
     /// Looks up where each hinge sits.
-    fn index_hinges(&mut self, turned: [RigidBodyHandle; 2], roll: Option<RollHinge>) {
+    fn index_hinges(&mut self, rolled: Option<(RigidBodyHandle, RollHinge)>) {
         let find = |body: RigidBodyHandle| {
             let id =
                 self.world.multibody_joints.rigid_body_link(body).expect("every part is linked");
             let link = self.multibody().link(id.id).expect("the link is there");
             Hinge { link: id.id, dof: link.assembly_id() }
         };
-        let joints = turned.map(find);
-        let roll = roll.map(|law| (find(self.frames[1]), law));
+        let joints = [self.frames[1], self.frames[2]].map(find);
+        let roll = rolled.map(|(body, law)| (find(body), law));
         (self.joints, self.arm_hinges, self.roll) = (joints, self.arms.map(find), roll);
     }
 

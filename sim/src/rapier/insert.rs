@@ -9,9 +9,9 @@ use crate::parts::{ArmPart, HullBall, Part, Parts};
 
 /// How a frame's contact with the ground springs, Hz, and its share of critical damping (assumed).
 const HULL_SPRING: (Real, Real) = (16.0, 0.4);
-/// The cross of a joint that turns and rolls (assumed): light beside the frames.
+/// The cross of a joint that rolls and turns: next to nothing, as its mass is in the frames' already.
 const CROSS: Part =
-    Part { mass_kg: 50.0, com_m: [0.0; 3], inertia_kg_m2: [5.0; 3], products_kg_m2: [0.0; 3] };
+    Part { mass_kg: 1e-3, com_m: [0.0; 3], inertia_kg_m2: [1e-3; 3], products_kg_m2: [0.0; 3] };
 /// Coefficient of friction of steel on ground (assumed).
 const HULL_FRICTION: Real = 0.5;
 /// Hulls meet the ground only, never one another.
@@ -56,11 +56,11 @@ fn on_frame(parts: &Parts, frame: usize, point_m: [f64; 3]) -> Vector {
     vector(core::array::from_fn(|i| point_m[i] - origin_m[i]))
 }
 
-/// The frames, and the bodies whose hinges are the front and the rear articulation joint.
+/// The frames, and the body whose hinge is the roll hinge, where there is one.
 pub(super) fn insert_frames(
     parts: &Parts,
     world: &mut PhysicsWorld,
-) -> ([RigidBodyHandle; 3], [RigidBodyHandle; 2]) {
+) -> ([RigidBodyHandle; 3], Option<RigidBodyHandle>) {
     let frames: [_; 3] = core::array::from_fn(|i| {
         let origin_m = origin_m(parts, i);
         let mut frame = parts.frames[i];
@@ -71,20 +71,22 @@ pub(super) fn insert_frames(
     let turn = |on_parent: Vector, on_child: Vector| {
         RevoluteJointBuilder::new(Vector::Z).local_anchor1(on_parent).local_anchor2(on_child)
     };
-    let mut turned = [frames[1], frames[2]];
     let (before, behind) = (on_frame(parts, 0, front_m), on_frame(parts, 1, front_m));
+    let mut rolled = None;
     if parts.roll_hinge.is_some() {
-        // The engine knows no joint of two angles: a cross between the frames has one of each.
-        turned[0] = world.bodies.insert(body(&CROSS).translation(vector(front_m)));
-        world.insert_multibody_joint(frames[0], turned[0], turn(before, Vector::ZERO));
-        let roll = RevoluteJointBuilder::new(Vector::X).local_anchor2(behind);
-        world.insert_multibody_joint(turned[0], frames[1], roll);
+        // The engine knows no joint of two angles: a cross between the frames has one of each. The front frame
+        // rolls on it and the joint turns behind it, so that the axis of the roll stays the front frame's.
+        let cross = world.bodies.insert(body(&CROSS).translation(vector(front_m)));
+        let roll = RevoluteJointBuilder::new(Vector::X).local_anchor1(before);
+        world.insert_multibody_joint(frames[0], cross, roll);
+        world.insert_multibody_joint(cross, frames[1], turn(Vector::ZERO, behind));
+        rolled = Some(cross);
     } else {
         world.insert_multibody_joint(frames[0], frames[1], turn(before, behind));
     }
     let (before, behind) = (on_frame(parts, 1, rear_m), on_frame(parts, 2, rear_m));
     world.insert_multibody_joint(frames[1], frames[2], turn(before, behind));
-    (frames, turned)
+    (frames, rolled)
 }
 
 /// What of a frame can touch the ground, without mass.

@@ -101,13 +101,16 @@ impl HingeSpring {
     }
 }
 
-/// Dry friction of the ground against a wheel's rolling, without a jump at rest.
+/// What resists a wheel's rolling, without a jump at rest.
+///
+/// It acts in the axle, between wheel and arm. Of a tyre alone it would be the ground's, against the wheel's turn in the
+/// world, and its arm would feel nothing of it; of bearings, seals and planets it is the arm's. The machines whose logs are at hand have it
+/// there: wheel loads are 0.06 kN off for 0.39 kN (`docs/second-opinion.md`).
 ///
 /// The torque falls from `most_nm` through nothing to its opposite within some hundredths of a rad/s,
 /// on soft ground so steeply that it would turn a wheel alone around within a step: one that slides, or
 /// whose tyre reckons with the wheel alone. So a solver takes it at the step's end:
-/// torque + most (tanh(rate / fade) at the start - tanh(rate / fade) at the end). Of a law without `most_nm`
-/// it takes the torque as it is.
+/// torque + most (tanh(rate / fade) at the start - tanh(rate / fade) at the end).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RollingDrag {
     /// Torque in the motion at the step's start, Nm, forward > 0.
@@ -186,7 +189,7 @@ pub struct Loads {
     pub joint: [HingeSpring; 2],
     /// Motor torques on the wheels, Nm, forward > 0; the arm bears the reaction.
     pub drive_nm: PerWheel<f64>,
-    /// Rolling resistance: from the ground on the wheel alone.
+    /// Rolling resistance, in the axle: the arm bears the reaction.
     pub drag: PerWheel<RollingDrag>,
     /// Dry friction that holds each wheel against its arm, Nm.
     pub hold_nm: PerWheel<f64>,

@@ -33,7 +33,7 @@ use self::factor::Factors;
 use self::newton::{Balance, Convergence};
 use self::pose::{ARMS, FREEDOMS, Inertias, JOINTS, Pose, ROLL, State, WHEELS};
 use self::spatial::{angular, linear};
-use self::touch::{CONTACTS_MAX, Search, patch};
+use self::touch::{CONTACTS_MAX, Search, patches};
 use self::tree::Tree;
 use crate::bodies::{Bodies, HELD_SHARE, HingeMotion, HingeSpring, Loads, Motion, Placed};
 use crate::{Parts, Terrain};
@@ -107,11 +107,10 @@ impl Bodies for ReducedBodies {
         let pose = Pose::new(&self.tree, &self.state);
         self.inertias.renew(&self.tree, &pose);
         let mut contacts = core::mem::take(&mut self.contacts);
-        self.search.contacts((&self.tree, &pose, &self.state), dt_s, &mut contacts);
+        let patches = patches(&self.tree, (&pose, &self.state), dt_s);
+        self.search.contacts((&self.tree, &pose, &self.state), &patches, dt_s, &mut contacts);
         let mut balance = balance((&self.tree, &self.state), (&pose, &self.inertias), loads, dt_s);
         let mut rate = self.state.rate;
-        let patches: [_; 6] =
-            core::array::from_fn(|i| patch(&self.tree, i, (&pose, &self.state), dt_s));
         self.convergence = balance.solve(&mut rate, &mut contacts, &mut self.factors);
         self.state.rate = rate;
         for (i, patch) in patches.iter().enumerate() {
@@ -224,11 +223,11 @@ fn balance<'a>(
     }
     let mut on_wheel = [spatial::ZERO; 6];
     for i in 0..6 {
-        lack[WHEELS + i] -= loads.drive_nm.0[i];
+        lack[WHEELS + i] -= loads.drive_nm.0[i] + loads.drag.0[i].torque_nm;
         let (arm, outside) = (&pose.arm[i], &loads.on_wheel.0[i]);
         let force = DVec3::from(outside.force_n);
-        let torque = arm.axle * loads.drag.0[i].torque_nm + DVec3::from(outside.torque_nm);
-        on_wheel[i] = spatial::join(torque + arm.wheel.cross(force), force);
+        let torque = DVec3::from(outside.torque_nm) + arm.wheel.cross(force);
+        on_wheel[i] = spatial::join(torque, force);
     }
     let from_ground = newton::generalised(pose, &on_wheel, [spatial::ZERO; 3]);
     for (lack, from_ground) in lack.iter_mut().zip(&from_ground) {

@@ -240,6 +240,31 @@ fn slippery_ground_takes_its_share_of_the_rolling() {
     assert!((gone_m / rolled_m - 0.9).abs() < 5e-3, "{gone_m} m of {rolled_m} m");
 }
 
+/// Held wheels turn with their arms, and loose ground takes its share of that.
+#[test]
+fn slippery_ground_gives_way_under_arms_that_swing_as_in_the_reference() {
+    fn gone_m<B: Bodies>(slip: f64) -> f64 {
+        let mut effects = Effects::default();
+        for wheel in Wheel::ALL {
+            effects.wheels[wheel].slippery_ground.slip = slip;
+        }
+        let step = Duration::from_secs_f64(1.0 / 200.0);
+        let strokes = PerWheel::splat(0.10);
+        let mut vehicle =
+            Vehicle::<B>::with(&Machine::xt28(), &effects, &Terrain::Flat, strokes, step);
+        let front = |w: Wheel| if w.axle() == Axle::Front { 0.5 } else { 0.0 };
+        let swing =
+            Actuation { brake_released: false, arm_opening: PerWheel::from_fn(front), ..idle() };
+        run(&mut vehicle, 200, 3.0, |_| swing).last().unwrap().position_m[0].abs()
+    }
+    let firm_m = gone_m::<ReducedBodies>(0.0);
+    for slip in [0.0, 0.5] {
+        let [fast_m, reference_m] = [gone_m::<ReducedBodies>(slip), gone_m::<RapierBodies>(slip)];
+        assert!((fast_m - reference_m).abs() < 0.004, "{slip}: {fast_m} and {reference_m} m");
+        assert!(slip == 0.0 || fast_m < 0.8 * firm_m, "{fast_m} m, {firm_m} m on firm ground");
+    }
+}
+
 #[test]
 fn a_clone_goes_on_bit_for_bit() {
     let mut vehicle = settled::<ReducedBodies>(&gentle(), 120);

@@ -17,6 +17,23 @@ fn added(added: f64, scope: &str) -> Effects {
         .unwrap()
 }
 
+/// Its axle bears a wheel's rolling resistance, and the arm so much less of what the motor asks of it: the place of the
+/// weight stays where it was however hard the wheels roll.
+fn leaves_the_weight<B: Bodies>() {
+    let [plain, hard] = [0.0, 0.1].map(|more| rolled::<B>(&Machine::xt28(), &added(more, "all")));
+    assert!(hard.wheel_torque_nm.sum() > 3.0 * plain.wheel_torque_nm.sum());
+    for wheel in Wheel::ALL {
+        let moved_n = hard.ground_force_n[wheel] - plain.ground_force_n[wheel];
+        assert!(moved_n.abs() < 900.0, "{wheel}: {moved_n} N");
+    }
+}
+
+#[test]
+fn wheels_that_roll_hard_leave_the_weight_where_it_was() {
+    leaves_the_weight::<RapierBodies>();
+    leaves_the_weight::<ReducedBodies>();
+}
+
 /// After 2 s of standing and 18 s of rolling.
 fn rolled<B: Bodies>(machine: &Machine, effects: &Effects) -> VehicleState {
     let stroke_m = PerWheel::splat(0.17);

@@ -83,8 +83,8 @@ const ARMS: Bounds = [
     ("pitch", 8e-5),
     ("joint", 2.1e-4),
     ("stroke", 3e-4),
-    ("wheel_speed", 0.014),
-    ("ground_force", 160.0),
+    ("wheel_speed", 0.023),
+    ("ground_force", 170.0),
 ];
 /// Up with the right wheels and down again: MuJoCo's wheels touch each triangle that they cut, at the edges of
 /// the ramp two or three at once.

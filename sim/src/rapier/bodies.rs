@@ -272,9 +272,10 @@ impl RapierBodies {
             let torque = torque + vector(outside.torque_nm);
             let gyroscopic = self.spins[wheel].gyroscopic_nm(axle, arm_rate);
             let turning = torque.dot(axle);
-            let turning_nm = f64::from(turning) + loads.drive_nm[wheel];
+            let in_axle_nm = loads.drive_nm[wheel] + self.tyres[wheel].tread().drag_nm;
+            let turning_nm = f64::from(turning) + in_axle_nm;
             let held_nm = self.spins[wheel].step(turning_nm, loads.hold_nm[wheel], arm_rad_s, dt_s);
-            let from_axle = turning + (loads.drive_nm[wheel] + held_nm) as Real;
+            let from_axle = turning + (in_axle_nm + held_nm) as Real;
             let arm = &mut self.world.bodies[self.arms[wheel]];
             arm.reset_forces(false);
             arm.reset_torques(false);

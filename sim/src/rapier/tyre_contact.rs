@@ -41,8 +41,10 @@ pub struct Tread {
     pub centre_m: [f64; 3],
     /// What the ground then pushed the wheel with, N.
     pub force_n: [f64; 3],
-    /// And turned it with about its centre, rolling resistance among it, Nm.
+    /// And turned it with about its centre, Nm.
     pub torque_nm: [f64; 3],
+    /// What resisted its rolling, in its axle, Nm; forward > 0.
+    pub drag_nm: f64,
     inputs: [PatchInput; PATCHES_MAX],
     count: usize,
 }
@@ -100,8 +102,8 @@ impl TyreContact {
         &self.tread
     }
 
-    /// Steps the tyre from where its wheel is now. Gives force and torque on the wheel, rolling
-    /// resistance among it, for the engine's next step of `dt_s` s.
+    /// Steps the tyre from where its wheel is now. Gives the ground's force and torque on the wheel for the engine's
+    /// next step of `dt_s` s; what resists the rolling in it is the tread's.
     pub(super) fn push(
         &mut self,
         rim: &Rim,
@@ -123,7 +125,7 @@ impl TyreContact {
         }
         let turning_nm = rim.drive_nm + f64::from(torque.dot(rim.axle));
         let drag_nm = self.rolling.step(drag, rim.rate_rad_s, turning_nm, dt_s);
-        torque += rim.axle * narrow(drag_nm);
+        self.tread.drag_nm = drag_nm;
         (self.tread.force_n, self.tread.torque_nm) = (wide(force), wide(torque));
         [force, torque]
     }

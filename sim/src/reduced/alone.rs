@@ -10,9 +10,9 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 
 use super::ReducedBodies;
 use super::contact::Body;
-use super::pose::{Generalized, Pose, State, WHEELS};
+use super::pose::{Generalized, Pose, State};
 use super::spatial::{angular, linear};
-use super::touch::{Search, patch};
+use super::touch::{Search, patches};
 use super::tree::Tree;
 use crate::{Actuation, Effects, Parts, Plant, STEP, Terrain, Vehicle, VehicleState};
 
@@ -73,7 +73,8 @@ fn tyres_alone_reproduce_the_whole() {
                 let bodies = vehicle.bodies();
                 let state = State { bristle_m, ..before.clone() };
                 let (pose, rate) = (Pose::new(&tree, &state), ended(&bodies.state, dt_s));
-                search.contacts((&tree, &pose, &state), dt_s, &mut contacts);
+                let patches = patches(&tree, (&pose, &state), dt_s);
+                search.contacts((&tree, &pose, &state), &patches, dt_s, &mut contacts);
                 let frames = pose.frame_twists(&rate);
                 for wheel in Wheel::ALL {
                     let i = wheel.index();
@@ -88,7 +89,7 @@ fn tyres_alone_reproduce_the_whole() {
                         })
                     });
                     let own = contacts.iter().filter(|c| c.body == Body::Wheel(i));
-                    bristle_m[i] = patch(&tree, i, (&pose, &state), dt_s).end_m(own);
+                    bristle_m[i] = patches[i].end_m(own);
                     let up_n = ours[0].z - bodies.ground_force_n[wheel];
                     worst_n = worst_n.max(up_n.abs()).max((ours[0] - theirs[0]).length());
                     worst_nm = worst_nm.max((ours[1] - theirs[1]).length());
@@ -114,50 +115,30 @@ fn masses_alone_reproduce_the_whole() {
     let dt_s = STEP.as_secs_f64();
     for terrain in [Terrain::Flat, tyre_rig::rough()] {
         for made in &machines() {
-            let tree = Tree::new(&Parts::new(&made.0, &made.1));
             let of = |s: &VehicleState| mass_rig::sum(&made.0, &made.1.masses, s);
-            let mut last: Option<(mass_rig::Sum, [DVec3; 2], PerWheel<f64>)> = None;
+            let mut last: Option<(mass_rig::Sum, [DVec3; 2])> = None;
             let (mut worst, mut most) = ([0.0_f64; 2], [0.0_f64; 2]);
             drive(made, &terrain, |before, vehicle| {
                 let (s, bodies) = (vehicle.state(), vehicle.bodies());
                 let seen = of(s);
                 let now = [seen.momentum, seen.angular].map(DVec3::from);
-                if let Some((sum, own, loads_n)) = &mut last {
+                if let Some((sum, own)) = &mut last {
                     let pushed: DVec3 = bodies.contacts.iter().map(|c| c.impulse()).sum();
                     let turned: DVec3 = bodies.contacts.iter().map(|c| c.moment()).sum();
                     let weight = DVec3::new(0.0, 0.0, -GRAVITY_M_S2 * dt_s);
                     own[0] += pushed + weight * sum.mass_kg;
                     own[1] += turned + before.position.cross(pushed);
                     own[1] += DVec3::from(sum.first_kg_m).cross(weight);
-                    own[1] += drag_nms(&made.0, (&tree, before), bodies, loads_n);
                     for i in 0..2 {
                         worst[i] = worst[i].max((own[i] - now[i]).length() / sum.mass_kg);
                         most[i] = most[i].max(now[i].length() / sum.mass_kg);
                     }
                 }
-                let own = last.map_or(now, |(_, own, _)| own);
-                last = Some((seen, own, s.ground_force_n));
+                let own = last.map_or(now, |(_, own)| own);
+                last = Some((seen, own));
             });
             assert!(most[0] > 0.3 && most[1] > 0.3, "it moves with {most:?} m/s, m2/s");
             assert!(worst[0] < 1e-3 && worst[1] < 0.01, "{worst:?} m/s, m2/s of {most:?}");
         }
     }
-}
-
-/// What rolling resistance, which acts from the ground on the wheels alone, turned the machine with over the last step.
-fn drag_nms(
-    machine: &Machine,
-    (tree, before): (&Tree, &State),
-    bodies: &ReducedBodies,
-    loads_n: &PerWheel<f64>,
-) -> DVec3 {
-    let pose = Pose::new(tree, before);
-    let w = &machine.wheels;
-    let each = Wheel::ALL.map(|wheel| {
-        let i = wheel.index();
-        let most_nm = w.rolling_resistance * w.radius_m * loads_n[wheel];
-        let drag_nm = most_nm * (bodies.state.rate[WHEELS + i] / 0.05).tanh();
-        pose.arm[i].axle * (-drag_nm * STEP.as_secs_f64())
-    });
-    each.into_iter().sum()
 }

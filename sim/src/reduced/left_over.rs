@@ -7,6 +7,7 @@ use super::contact::Body;
 use super::pose::{FREEDOMS, Generalized, Pose, State, WHEELS};
 use super::spatial::add;
 use super::tests::{inertias, mass_matrix, parts};
+use super::touch::patches;
 use super::tree::Tree;
 use crate::Terrain;
 use crate::bodies::{Bodies, HingeSpring, Loads, RollingDrag};
@@ -22,7 +23,8 @@ fn out_of_balance_m_s(before: &ReducedBodies, after: &State, loads: &Loads, dt_s
     let gained: Generalized = core::array::from_fn(|k| rate[k] - state.rate[k]);
 
     let mut contacts = Vec::new();
-    before.search.clone().contacts((tree, &pose, state), dt_s, &mut contacts);
+    let patches = patches(tree, (&pose, state), dt_s);
+    before.search.clone().contacts((tree, &pose, state), &patches, dt_s, &mut contacts);
     let (mut on_wheel, mut on_frame) = ([[0.0; 6]; 6], [[0.0; 6]; 3]);
     let frames = pose.frame_twists(&rate);
     for mut contact in contacts {

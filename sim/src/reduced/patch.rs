@@ -55,7 +55,7 @@ impl Bristles {
 pub(super) struct Rolling {
     pub(super) bristle_m: [f64; 2],
     pub(super) axle: DVec3,
-    /// Speed of the rim, m/s.
+    /// Speed of the rim as the wheel turns against the world, m/s.
     pub(super) rim_m_s: f64,
     pub(super) wheel_kg: f64,
 }

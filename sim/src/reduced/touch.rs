@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::contact::{Body, Contact, ContactLaw, Grip};
 use super::ground::Touches;
 use super::patch::{Patch, Rolling};
-use super::pose::{Pose, State, WHEELS};
+use super::pose::{Pose, State};
 use super::spatial::{Spatial, angular, velocity_at};
 use super::tree::Tree;
 use crate::{HullBall, Terrain};
@@ -53,18 +53,18 @@ impl Search {
     pub(super) fn contacts(
         &mut self,
         (tree, pose, state): (&Tree, &Pose, &State),
+        patches: &[Patch; 6],
         dt_s: f64,
         found: &mut Vec<Contact>,
     ) {
         found.clear();
         let frames = pose.frame_twists(&state.rate);
-        for i in 0..6 {
+        for (i, patch) in patches.iter().enumerate() {
             let centre = pose.arm[i].wheel;
             let arm = pose.arm_twist(i, &frames[Tree::frame_of(i)], &state.rate);
             let speed_m_s = velocity_at(&arm, centre).length();
             let ball = Ball { body: Body::Wheel(i), centre, radius_m: tree.radius_m, speed_m_s };
-            let patch = patch(tree, i, (pose, state), dt_s);
-            self.add(&ball, state.position, &tree.laws[i], Some(&patch), dt_s, found);
+            self.add(&ball, state.position, &tree.laws[i], Some(patch), dt_s, found);
         }
         for (i, hull) in tree.hulls.iter().enumerate() {
             let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
@@ -138,15 +138,18 @@ impl Search {
     }
 }
 
-/// The patch of wheel `i` at the start of a step.
-pub(super) fn patch(tree: &Tree, i: usize, (pose, state): (&Pose, &State), dt_s: f64) -> Patch {
-    let wheel = Rolling {
-        bristle_m: state.bristle_m[i],
-        axle: pose.arm[i].axle,
-        rim_m_s: state.rate[WHEELS + i] * tree.radius_m,
-        wheel_kg: tree.arms[i].wheel_kg,
-    };
-    Patch::new(&tree.tyres[i], &wheel, dt_s)
+/// The patches of all wheels at the start of a step.
+pub(super) fn patches(tree: &Tree, (pose, state): (&Pose, &State), dt_s: f64) -> [Patch; 6] {
+    let rolling_rad_s = state.rolling_rad_s(tree);
+    core::array::from_fn(|i| {
+        let wheel = Rolling {
+            bristle_m: state.bristle_m[i],
+            axle: pose.arm[i].axle,
+            rim_m_s: rolling_rad_s[i] * tree.radius_m,
+            wheel_kg: tree.arms[i].wheel_kg,
+        };
+        Patch::new(&tree.tyres[i], &wheel, dt_s)
+    })
 }
 
 /// How far from a ball ground can be and still make a force within the step, m: a damper acts from

@@ -258,10 +258,11 @@ fn seals(scene: Scene, shows: fn(&Seen) -> Vec<Size>) -> Row {
     }
 }
 
-/// The oil bears what the seals drag at this speed beside the load, whose mean is what it was.
+/// The oil bears what the seals drag at this speed beside the load, whose mean is what it was but for what the wheels
+/// that go along resist.
 fn loop_n(seen: &Seen, between_s: [f64; 2], opening: f64) -> Vec<Size> {
     let fade = opening * FULL_M_S / 0.008;
     let wanted_n = (3000.0 + 2000.0 * (-fade * fade).exp()).copysign(opening);
     let [without, with] = seen.means(between_s, |s| s.cylinder_force_n.mean());
-    vec![Size::new("oil's force, N", with - without, wanted_n, 150.0)]
+    vec![Size::new("oil's force, N", with - without, wanted_n, 250.0)]
 }

@@ -105,13 +105,10 @@ class Vehicle:
         data.qfrc_applied[dofs] = self._drive.step(
             actuation.pump, actuation.motor, actuation.engine_rpm, rates, dt_s
         )
-        for wheel, body in enumerate(self._wheel_bodies):
-            drag_nm = rolling_drag_nm(
+        for wheel, dof in enumerate(dofs):
+            data.qfrc_applied[dof] += rolling_drag_nm(
                 self._machine, self.ground_force_n[wheel], float(rates[wheel])
             )
-            # From the ground: no reaction on the machine.
-            axle = data.xaxis[self._hinge["wheel"][wheel]]
-            data.xfrc_applied[body, 3:] = drag_nm * axle
 
     def contacts(self) -> list[int]:
         """Number of contacts of each wheel."""

@@ -6,7 +6,7 @@ mod engine;
 use std::f64::consts::TAU;
 
 use xt28_machine::{Machine, PerWheel, Wheel};
-use xt28_sim::{Motion, RollingDrag};
+use xt28_sim::Motion;
 
 use self::circuit::Circuit;
 use self::engine::Engine;
@@ -47,7 +47,7 @@ pub(crate) struct DriveDemand {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct WheelTorques {
     pub(crate) drive_nm: PerWheel<f64>,
-    pub(crate) drag: PerWheel<RollingDrag>,
+    pub(crate) drag_nm: PerWheel<f64>,
     pub(crate) hold_nm: PerWheel<f64>,
 }
 
@@ -160,12 +160,7 @@ impl Drive {
             let normal_n = motion.ground_force_n[wheel].max(0.0);
             let dry = rolling[wheel] * normal_n * machine.wheels.radius_m
                 + truth.binding_nm[wheel] * bite;
-            // A law of its own, and steps short enough for it as it is: a solver is not to put in its own.
-            torques.drag[wheel] = RollingDrag {
-                torque_nm: -dry * speed / speed.hypot(FADE_RAD_S),
-                most_nm: 0.0,
-                fade_rad_s: FADE_RAD_S,
-            };
+            torques.drag_nm[wheel] = -dry * speed / speed.hypot(FADE_RAD_S);
         }
     }
 
@@ -244,10 +239,10 @@ mod tests {
             ground_force_n: PerWheel::splat(30e3),
             ..Motion::default()
         };
-        let plain = after(|_| (), 1.0, &motion, 10).drag[Wheel::Fl].torque_nm;
+        let plain = after(|_| (), 1.0, &motion, 10).drag_nm[Wheel::Fl];
         assert!((plain + 0.02 * 30e3 * 0.74).abs() < 1.0, "{plain}");
         let bad = |d: &mut DriveTruth| d.binding_nm[Wheel::Fl] = 4e3;
-        let bite = |steps| after(bad, 1.0, &motion, steps).drag[Wheel::Fl].torque_nm - plain;
+        let bite = |steps| after(bad, 1.0, &motion, steps).drag_nm[Wheel::Fl] - plain;
         assert!(bite(10) < -3.9e3 && bite(1570).abs() < 1.0);
     }
 }

@@ -1,5 +1,6 @@
 //! A foreign machine: rigid bodies of the bench, every other law of its own, tyres and ground included.
 
+use glam::DVec3;
 use xt28_machine::{Linkage, PerWheel, Wheel};
 use xt28_sim::terrain::Plane;
 use xt28_sim::{HingeSpring, Loads, Motion, Parts, Placed, REFERENCE_STROKE_M, Ramp, Terrain};
@@ -117,12 +118,18 @@ impl<B: Placed> Foreign<B> {
                 self.joints[i].turn(&truth.steering, machine, self.motion.joint[i], rate, STEP_S)
             }),
             drive_nm: torques.drive_nm,
-            drag: torques.drag,
             hold_nm: torques.hold_nm,
             on_wheel: PerWheel::from_fn(|wheel| {
                 let (tyre, radius_m) = (&truth.body.tyres[wheel], self.parts.radius_m);
-                self.carcasses[wheel].step(tyre, radius_m, &rims[wheel], &self.ground, STEP_S)
+                let rim = &rims[wheel];
+                let mut push =
+                    self.carcasses[wheel].step(tyre, radius_m, rim, &self.ground, STEP_S);
+                // What resists the rolling is the ground's here, and no arm feels it.
+                let drag = rim.axle * torques.drag_nm[wheel];
+                push.torque_nm = (DVec3::from(push.torque_nm) + drag).to_array();
+                push
             }),
+            ..Loads::default()
         };
         self.bodies.advance(&loads, STEP_S);
         self.motion = self.bodies.motion();

@@ -25,8 +25,9 @@ const HELD: f64 = 1.5;
 /// How strongly it speaks against a cause that its one number is where its law ends: it would go on. Of right answers
 /// none whose number is known is there.
 const AT_ITS_END: f64 = 2.0;
-/// Evidence of the cause from which that counts, nats: what bends to next to nothing bends as far as it can.
-const ENDED_MIN: f64 = 36.0;
+/// Evidence of the cause from which that counts, nats, which makes it as likely as none: what bends to next to
+/// nothing bends as far as it can.
+const ENDED_MIN: f64 = 18.0;
 /// Share of a range within which a number is at the end of it.
 const END: f64 = 1e-3;
 /// Standard deviation, in tolerances, from which a number may as well be well within its range.

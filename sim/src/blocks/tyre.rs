@@ -5,7 +5,8 @@
 //! ground at every point touched; its force is k d + c d'. Along the ground the patch is a brush:
 //! bristles deflect by z with z' = v - |u|/relaxation z, where v is the tread's slip and u its rolling,
 //! and push with k z + c z' up to friction times load (Pacejka, Tire and Vehicle Dynamics, chapters 7
-//! and 8: single contact point with relaxation; the brush's slip stiffness is k times relaxation).
+//! and 8: single contact point with relaxation; the brush's slip stiffness is k times relaxation). A tyre
+//! that touches in several points has one brush, of which each has the share that it has of the load.
 //!
 //! Both are stepped implicitly, without asking the solver of the rigid bodies for anything: the velocity
 //! at the end of the step is foreseen from the acceleration of the step before and from what the change
@@ -46,6 +47,8 @@ pub struct PatchState {
     pub normal: [f64; 3],
     /// Load, N.
     pub load_n: f64,
+    /// Share of the tyre's load that it is.
+    pub share: f64,
     /// Force along the ground on the tread: forward and to the left, N.
     pub along_n: [f64; 2],
     /// Deflection of the bristles: forward and to the left, m.
@@ -115,8 +118,9 @@ impl Tyre {
         let before = &known[..inputs.len()];
         let mut after = Patches::default();
         let loads_n = self.loads_n(before, inputs, dt_s);
+        let sum_n: f64 = loads_n.iter().sum();
         for ((state, input), load_n) in before.iter().zip(inputs).zip(loads_n) {
-            after.push(self.drag(state, input, load_n, dt_s));
+            after.push(self.drag(state, input, [load_n, load_n / sum_n], dt_s));
         }
         after
     }
@@ -149,31 +153,42 @@ impl Tyre {
         loads_n
     }
 
-    /// The patch under `load_n` after `dt_s` s.
-    fn drag(&self, state: &PatchState, input: &PatchInput, load_n: f64, dt_s: f64) -> PatchState {
+    /// The patch under `load_n`, which is `share` of the tyre's, after `dt_s` s.
+    fn drag(
+        &self,
+        state: &PatchState,
+        input: &PatchInput,
+        [load_n, share]: [f64; 2],
+        dt_s: f64,
+    ) -> PatchState {
         if load_n <= 0.0 {
             return PatchState { normal: input.normal, ..PatchState::default() };
         }
-        let stiffness = [self.brush.longitudinal_n_m, self.brush.lateral_n_m];
+        let whole = [self.brush.longitudinal_n_m, self.brush.lateral_n_m];
+        let stiffness = whole.map(|k| share * k);
         let limit_n = self.friction * load_n;
         let rolled = dt_s * input.rolling_m_s.abs() / self.brush.relaxation_m;
         // What the ground shears by a force is a share of the deflection that makes it.
-        let renewal = stiffness.map(|k| 1.0 + rolled + dt_s * self.creep_m_s_n * k);
+        let renewal = whole.map(|k| 1.0 + rolled + dt_s * self.creep_m_s_n * k);
         // The step that has just been made carried the bristles along, as far as friction let it.
         let carried = |i: usize| (state.bristle_m[i] + dt_s * input.slip_m_s[i]) / renewal[i];
         let bristle_m = if state.load_n > 0.0 { [carried(0), carried(1)] } else { [0.0; 2] };
         let held_n = (stiffness[0] * bristle_m[0]).hypot(stiffness[1] * bristle_m[1]);
-        let share = if held_n > limit_n { limit_n / held_n } else { 1.0 };
-        let bristle_m = bristle_m.map(|z| z * share);
+        let kept = if held_n > limit_n { limit_n / held_n } else { 1.0 };
+        let bristle_m = bristle_m.map(|z| z * kept);
         let mut along_n: [f64; 2] = core::array::from_fn(|i| {
             // k z + c z' at the end of the coming step, with the slip that this very force leaves.
-            let damping_n_s_m = 2.0 * BRISTLE_DAMPING * (stiffness[i] * self.moves_kg[1]).sqrt();
+            let damping_n_s_m =
+                share * 2.0 * BRISTLE_DAMPING * (whole[i] * self.moves_kg[1]).sqrt();
             let rate_n_m = damping_n_s_m / dt_s;
             let hold_n_m = (stiffness[i] + rate_n_m) / renewal[i];
             let coming_m_s = 2.0 * input.slip_m_s[i] - state.slip_m_s[i];
             let now_n = hold_n_m * (bristle_m[i] + dt_s * coming_m_s) - rate_n_m * bristle_m[i];
             let follows = hold_n_m * dt_s * dt_s / self.moves_kg[1];
-            (follows * state.along_n[i] - now_n) / (1.0 + follows)
+            // Of what the whole brush held with a patch that may have been another share of it.
+            let held_n =
+                if state.share > 0.0 { state.along_n[i] * share / state.share } else { 0.0 };
+            (follows * held_n - now_n) / (1.0 + follows)
         });
         let asked_n = along_n[0].hypot(along_n[1]);
         if asked_n > limit_n {
@@ -182,6 +197,7 @@ impl Tyre {
         PatchState {
             normal: input.normal,
             load_n,
+            share,
             along_n,
             bristle_m,
             depth_rate_m_s: input.depth_rate_m_s,
@@ -285,6 +301,34 @@ mod tests {
         for tilt in [0.0, 0.01, 0.1] {
             let twice_n = carried(&[at(0.0), at(tilt)]);
             assert!((twice_n / once_n - 1.0).abs() < 0.01, "{tilt}: {twice_n}");
+        }
+    }
+
+    /// Where the ground under a tyre that is pushed aside breaks into two planes, its bristles hold on.
+    #[test]
+    fn a_patch_that_splits_in_two_holds_as_one() {
+        let tyre = tyre(8e6, 6e4, brush());
+        let held = PatchState {
+            normal: UP,
+            load_n: 4e4,
+            share: 1.0,
+            along_n: [0.0, -4e3],
+            bristle_m: [0.0, 0.01],
+            ..PatchState::default()
+        };
+        let at = |tilt: f64| PatchInput {
+            normal: [tilt.sin(), 0.0, tilt.cos()],
+            depth_m: 0.005,
+            ..PatchInput::default()
+        };
+        let aside_n = |inputs: &[PatchInput]| -> f64 {
+            tyre.step(&[held], inputs, DT_S).states().iter().map(|s| s.along_n[1]).sum()
+        };
+        let once_n = aside_n(&[at(0.0)]);
+        assert!(once_n < -3.9e3, "{once_n} N");
+        for tilt in [0.04, 0.1, 0.2] {
+            let twice_n = aside_n(&[at(-tilt), at(tilt)]);
+            assert!((twice_n / once_n - 1.0).abs() < 0.05, "{tilt}: {twice_n}, not {once_n} N");
         }
     }
 

@@ -30,7 +30,7 @@ const ROBUST: f64 = 5.0;
 /// Time after which errors of the whole machine are drawn anew, in samples: 2 s.
 const CORRELATED: f64 = 20.0;
 /// Rounds of slopes at most.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 /// A round that gains less than this share of the cost is the last.
 const ENOUGH: f64 = 2.0e-3;
 

@@ -301,7 +301,7 @@ mod tests {
         assert!(ended.times > 1.5 && ended.why.contains("beyond 0.1"), "{ended:?}");
         assert!(known_to(0.1, "lock-damping", 0.1, 90.0).times < 1.0, "it may as well be 0.2");
         assert!(
-            of("lock-damping", 0.1, 20.0).times < 1.0 && of("lock-damping", 0.17, 90.0).times < 1.0
+            of("lock-damping", 0.1, 12.0).times < 1.0 && of("lock-damping", 0.17, 90.0).times < 1.0
         );
         assert!(
             of("arm-delay", 0.0, 90.0).times < 1.0 && of("accumulator-gas", 1.0, 90.0).times < 1.0

@@ -2,7 +2,10 @@
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, TyreModel, Wheel};
 use xt28_sim::effects::{Overlay, SoftTyre};
-use xt28_sim::{Actuation, Effects, Plant, Ramp, STEP, Terrain, Vehicle, VehicleState};
+use xt28_sim::{
+    Actuation, Bodies, Effects, Plant, Ramp, RapierBodies, ReducedBodies, STEP, Terrain, Track,
+    Vehicle, VehicleState,
+};
 
 fn overlay(text: &str) -> Effects {
     Overlay::parse(text, std::path::Path::new("o.toml")).unwrap().effects(&Machine::xt28()).unwrap()
@@ -36,6 +39,50 @@ fn soft(stiffness_n_m: f64, damping_n_s_m: f64) -> Effects {
         effects.wheels[wheel].soft_tyre = SoftTyre { stiffness_n_m, damping_n_s_m };
     }
     effects
+}
+
+/// What the ground pushes the machine with after a fall of 0.8 m, N: most while all wheels are above it, and most.
+fn fallen_n<B: Bodies>(effects: &Effects) -> [f64; 2]
+where
+    Vehicle<B>: Track,
+{
+    let (machine, idle) = (Machine::xt28(), Actuation::idle(1200.0));
+    let mut vehicle: Vehicle<B> =
+        Vehicle::with(&machine, effects, &Terrain::Flat, PerWheel::splat(0.17), STEP);
+    (0..1000).for_each(|_| vehicle.step(&idle));
+    let mut lifted = *vehicle.state();
+    lifted.position_m[2] += 0.8;
+    lifted.antenna_position_m[2] += 0.8;
+    vehicle.place(&lifted, &idle);
+    let drop_m = |stroke_m: f64| machine.linkage().at_stroke(stroke_m).drop_m;
+    let mut most_n = [0.0_f64; 2];
+    for _ in 0..120 {
+        let before = *vehicle.state();
+        vehicle.step(&idle);
+        // With the reference stroke the wheels of a frame at height zero touch.
+        let above_m = Wheel::ALL.map(|w| {
+            let at_m = |s: &VehicleState| s.position_m[2] - drop_m(s.stroke_m[w]) + drop_m(0.25);
+            at_m(&before).min(at_m(vehicle.state()))
+        });
+        let is_above = above_m.iter().all(|above_m| *above_m > 1e-3);
+        let pushed_n = vehicle.state().ground_force_n.sum();
+        most_n = [most_n[0].max(if is_above { pushed_n } else { 0.0 }), most_n[1].max(pushed_n)];
+    }
+    most_n
+}
+
+/// However soft a tyre and strong its damper, the air holds nothing.
+#[test]
+fn a_machine_that_falls_feels_the_ground_when_it_touches_it() {
+    for (stiffness_n_m, damping_n_s_m) in [(8e6, 6e4), (4e5, 6e4), (1.5e5, 2e5)] {
+        let effects = soft(stiffness_n_m, damping_n_s_m);
+        let fallen = [fallen_n::<RapierBodies>(&effects), fallen_n::<ReducedBodies>(&effects)];
+        for [above_n, most_n] in fallen {
+            assert!(above_n == 0.0 && most_n > 4e5, "{stiffness_n_m}: {above_n}, {most_n} N");
+        }
+        let ratio = fallen[1][1] / fallen[0][1];
+        assert!((ratio - 1.0).abs() < 0.2, "{stiffness_n_m}: {fallen:?} N");
+    }
 }
 
 fn rms(values: impl Iterator<Item = f64>) -> f64 {

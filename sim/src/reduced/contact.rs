@@ -1,9 +1,9 @@
 //! The law of a contact within one step: a spring and damper that only pushes, and Coulomb friction.
 //!
 //! Implicit: the impulse is a function of the velocity at the step's end. A tyre's force is
-//! max(0, k d - c d') with the depth d where the step ends, so the damper acts from the moment at
-//! which the point is c/k ahead of touching. That makes the force continuous when a wheel comes
-//! down. Friction is isotropic, at most mu times the normal force. What it is below that is the
+//! max(0, k d - c s d') with the depth d where the step ends: none in the air. The share s of the damper rises from
+//! none where the ground is touched to all of it at [`DAMPED_AT_M`], which makes the force continuous
+//! when a wheel comes down, and it falls with the velocity at any depth, so that there is one solution. Friction is isotropic, at most mu times the normal force. What it is below that is the
 //! contact's [`Grip`]: springs of a tyre's patch, or a creep in proportion to the force, as every
 //! solver of rigid friction must let it or not know its force.
 
@@ -13,6 +13,9 @@ use super::spatial::{Spatial, Spatial6, ZERO, add_scaled, dot, wrench_at};
 
 /// Sideways force per creep while a rigid contact sticks, N s/m (assumed): 10 kN creep 0.1 mm/s.
 const CREEP_N_S_M: f64 = 1.0e8;
+
+/// Depth from which on a contact's damping is in full, m (assumed): half of what a nominal tyre gives at rest.
+const DAMPED_AT_M: f64 = 2.0e-3;
 
 /// A spring and damper normal to the ground, and its friction.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +71,8 @@ pub(super) struct Made {
     pub(super) velocity_m_s: Local,
     /// On the body, N s.
     pub(super) impulse: Local,
+    /// Normal impulse that a normal velocity takes away, kg.
+    slope: f64,
     pub(super) hold: Hold,
 }
 
@@ -79,10 +84,13 @@ pub(super) struct Contact {
     pub(super) axes: [DVec3; 3],
     /// Wrenches of unit forces along the axes about the front frame's origin.
     wrench: [Spatial; 3],
-    /// Impulse if the point stood still, N s.
-    push: f64,
-    /// Impulse that a normal velocity takes away, kg.
-    slope: f64,
+    /// Depth when the step begins, m.
+    depth_m: f64,
+    dt_s: f64,
+    /// Normal impulse per depth where the step ends, N s/m.
+    spring: f64,
+    /// Normal impulse per velocity of one that is damped in full, kg.
+    damper: f64,
     hold: [f64; 2],
     stick: [f64; 2],
     friction: f64,
@@ -116,15 +124,16 @@ impl Contact {
         weight: f64,
         dt_s: f64,
     ) -> Self {
-        let stiffness = law.stiffness_n_m * dt_s * weight;
         let axes = [normal, grip.along[0], grip.along[1]];
-        let none = Made { velocity_m_s: [0.0; 3], impulse: [0.0; 3], hold: Hold::Open };
+        let none = Made { velocity_m_s: [0.0; 3], impulse: [0.0; 3], slope: 0.0, hold: Hold::Open };
         Self {
             body,
             axes,
             wrench: axes.map(|axis| wrench_at(axis, at)),
-            push: stiffness * depth_m,
-            slope: stiffness * dt_s + law.damping_n_s_m * dt_s * weight,
+            depth_m,
+            dt_s,
+            spring: law.stiffness_n_m * dt_s * weight,
+            damper: law.damping_n_s_m * dt_s * weight,
             hold: grip.hold.map(|hold| hold * weight),
             stick: grip.stick.map(|stick| stick * weight),
             friction: law.friction,
@@ -144,22 +153,30 @@ impl Contact {
     #[inline]
     fn made(&self, velocity_m_s: Local) -> Made {
         let [out, v1, v2] = velocity_m_s;
-        let normal = self.push - self.slope * out;
-        if normal <= 0.0 {
-            return Made { velocity_m_s, impulse: [0.0; 3], hold: Hold::Open };
+        let end_m = self.depth_m - self.dt_s * out;
+        let (share, deepens) = if end_m < DAMPED_AT_M {
+            (end_m / DAMPED_AT_M, self.dt_s / DAMPED_AT_M)
+        } else {
+            (1.0, 0.0)
+        };
+        let normal = self.spring * end_m - self.damper * share * out;
+        if end_m <= 0.0 || normal <= 0.0 {
+            return Made { velocity_m_s, impulse: [0.0; 3], slope: 0.0, hold: Hold::Open };
         }
+        let slope = self.spring * self.dt_s + self.damper * (share - deepens * out);
         let grip = [self.hold[0] + self.stick[0] * v1, self.hold[1] + self.stick[1] * v2];
         let (size2, most) = (grip[0] * grip[0] + grip[1] * grip[1], self.friction * normal);
         if size2 <= most * most || self.held {
             return Made {
                 velocity_m_s,
                 impulse: [normal, -grip[0], -grip[1]],
+                slope,
                 hold: Hold::Sticks,
             };
         }
         let share = most / size2.sqrt();
         let impulse = [normal, -grip[0] * share, -grip[1] * share];
-        Made { velocity_m_s, impulse, hold: Hold::Slides }
+        Made { velocity_m_s, impulse, slope, hold: Hold::Slides }
     }
 
     /// Minus the derivative of its impulse at the present guess by columns, kg. With `coupled` false,
@@ -169,16 +186,16 @@ impl Contact {
         let [k1, k2] = self.stick;
         match self.now.hold {
             Hold::Open => [[0.0; 3]; 3],
-            Hold::Sticks => [[self.slope, 0.0, 0.0], [0.0, k1, 0.0], [0.0, 0.0, k2]],
+            Hold::Sticks => [[self.now.slope, 0.0, 0.0], [0.0, k1, 0.0], [0.0, 0.0, k2]],
             Hold::Slides => {
                 let [_, v1, v2] = self.now.velocity_m_s;
                 let (g1, g2) = (self.hold[0] + k1 * v1, self.hold[1] + k2 * v2);
                 let per_size = 1.0 / (g1 * g1 + g2 * g2).sqrt();
                 let (e1, e2) = (g1 * per_size, g2 * per_size);
                 let share = self.friction * self.now.impulse[0] * per_size;
-                let follows = if coupled { -self.friction * self.slope } else { 0.0 };
+                let follows = if coupled { -self.friction * self.now.slope } else { 0.0 };
                 [
-                    [self.slope, follows * e1, follows * e2],
+                    [self.now.slope, follows * e1, follows * e2],
                     [0.0, share * e2 * e2 * k1, -share * e1 * e2 * k1],
                     [0.0, -share * e1 * e2 * k2, share * e1 * e1 * k2],
                 ]

@@ -15,6 +15,8 @@ use crate::{HullBall, Terrain};
 pub(super) const CONTACTS_MAX: usize = 96;
 /// Sheet steel on ground (assumed): stiff enough to be seen at once, soft enough for any step.
 const HULL: ContactLaw = ContactLaw { stiffness_n_m: 4.0e6, damping_n_s_m: 6.0e4, friction: 0.5 };
+/// How fast a part may get faster within a step, m/s2 (assumed).
+const GAINED_M_S2: f64 = 20.0;
 /// How far from the ground a part of the hull is told to be at most, m.
 const CLEARANCE_MAX_M: f64 = 0.4;
 
@@ -70,7 +72,7 @@ impl Search {
             let speed_m_s = velocity_at(&frames[i], pose.frame[i].com).length()
                 + angular(&frames[i]).length() * tree.hull_reach_m[i];
             self.clear_m[i] -= speed_m_s * dt_s;
-            if self.clear_m[i] < ahead_m(&HULL, speed_m_s, dt_s) {
+            if self.clear_m[i] < ahead_m(speed_m_s, dt_s) {
                 self.clear_m[i] =
                     self.hull((i, hull), &frames[i], (pose, state), dt_s, found).max(0.0);
             }
@@ -91,7 +93,7 @@ impl Search {
             let centre = pose.frame[frame].point(part.centre_m.into());
             let world = (state.position + centre).to_array();
             let speed_m_s = velocity_at(twist, centre).length();
-            let ahead_m = ahead_m(&HULL, speed_m_s, dt_s);
+            let ahead_m = ahead_m(speed_m_s, dt_s);
             let mut gap_m = CLEARANCE_MAX_M;
             // However deep another part is in the ground, this one may touch it too.
             self.terrain.each_minimum(world, part.radius_m + clear_m.max(ahead_m), |nearest| {
@@ -117,7 +119,7 @@ impl Search {
         dt_s: f64,
         found: &mut Vec<Contact>,
     ) {
-        let reach_m = ball.radius_m + ahead_m(law, ball.speed_m_s, dt_s);
+        let reach_m = ball.radius_m + ahead_m(ball.speed_m_s, dt_s);
         self.touches.find(&self.terrain, origin + ball.centre, reach_m);
         for touch in self.touches.iter() {
             let depth_m = ball.radius_m - touch.distance_m;
@@ -152,8 +154,8 @@ pub(super) fn patches(tree: &Tree, (pose, state): (&Pose, &State), dt_s: f64) ->
     })
 }
 
-/// How far from a ball ground can be and still make a force within the step, m: a damper acts from
-/// k d = c d' on.
-fn ahead_m(law: &ContactLaw, speed_m_s: f64, dt_s: f64) -> f64 {
-    (law.damping_n_s_m / law.stiffness_n_m + dt_s) * speed_m_s
+/// How far from a ball ground can be and still make a force within the step, m: what it may travel, and half as
+/// much again for what it may gain.
+fn ahead_m(speed_m_s: f64, dt_s: f64) -> f64 {
+    1.5 * dt_s * speed_m_s + GAINED_M_S2 * dt_s * dt_s
 }

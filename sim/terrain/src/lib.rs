@@ -83,6 +83,10 @@
 //! A file of one layer may say `kind = "ramp"` and the layer's keys without a header; level ground is
 //! `kind = "flat"`.
 //!
+//! What would take minutes is refused: more than 2^30 heights to be worked out by all layers together (a height for
+//! each grid point, octave or point under a boulder, and 2^24 for a file), boulders that find room only after ten
+//! million draws, and files above 512 MiB.
+//!
 //! # Beyond the grid
 //!
 //! The ground goes on at the height of the nearest edge, plus the slope; there is no cliff to fall
@@ -105,6 +109,7 @@ mod search;
 mod spec;
 mod stance;
 mod terrain;
+mod work;
 
 pub use error::TerrainError;
 pub use extent::Extent;

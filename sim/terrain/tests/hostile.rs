@@ -224,3 +224,29 @@ fn layers_one_by_one_survive_extremes() {
     }
     assert_eq!(toml::Value::try_from(LayerKind::HeightMap).unwrap().as_str(), Some("height_map"));
 }
+
+/// Few lines that would keep a processor busy for minutes, draw without end, or read a disk full of zeros.
+#[test]
+fn work_without_end_is_refused_before_it_is_begun() {
+    let folder = tempfile::tempdir().unwrap();
+    let huge = fs::File::create(folder.path().join("huge.asc")).unwrap();
+    huge.set_len((1 << 29) + 1).unwrap();
+    fs::create_dir(folder.path().join("folder.asc")).unwrap();
+    let boulders = "kind = \"boulders\"\nheight_m = [1, 1]\ncount = 100000\n";
+    let perlin = "[[perlin]]\namplitude_m = 1\nwavelength_m = 100\noctaves = 8\n".repeat(100);
+    for (text, says) in [
+        (format!("{boulders}radius_m = [20, 20]"), "t.toml:1: [boulders]: with this layer"),
+        (
+            format!(
+                "{boulders}radius_m = [0.3, 0.3]\nclear = {{ x_m = [-14.365, 45], y_m = [-20, 20] }}"
+            ),
+            "[boulders]: clear leaves so little room",
+        ),
+        (format!("{perlin}[grid]\nx_m = [0, 400]\ny_m = [0, 400]"), "t.toml:33: [perlin]: with"),
+        ("kind = \"height_map\"\nfile = \"huge.asc\"".to_owned(), "huge.asc: 536870913 bytes"),
+        ("kind = \"height_map\"\nfile = \"folder.asc\"".to_owned(), "folder.asc: it is no plain"),
+    ] {
+        let error = Terrain::parse(&text, &folder.path().join("t.toml")).unwrap_err().to_string();
+        assert!(error.contains(says) && !error.contains('\n'), "{error}");
+    }
+}

@@ -64,7 +64,8 @@
 //! ```
 //!
 //! A height map comes from a file beside the TOML: an ESRI ASCII grid, a GeoTIFF in metres, or a grey
-//! PNG of 8 or 16 bits.
+//! PNG of 8 or 16 bits. A GeoTIFF that names its system and no unit is taken if that system is known to be in metres,
+//! and refused otherwise: it may be in feet.
 //!
 //! ```toml
 //! [[height_map]]

@@ -107,8 +107,8 @@ fn second_numbers_at_neutral_leave_the_bus_as_it_is() {
         "name = \"arm-gain\"\nki_factor = 1.0",
         "name = \"steer-gain\"\nki_factor = 1.0",
         "name = \"rear-follower-lag\"\nratio_factor = 1.0",
-        "name = \"drive-lag\"\nlead_s = 0.0",
-        "name = \"unsupported-sag\"\nbelow_n = 0.0",
+        "name = \"drive-lag\"\ntime_constant_s = 0.0\nlead_s = 0.0",
+        "name = \"unsupported-sag\"\nrate_m_s = 0.0\nbelow_n = 0.0",
     ] {
         assert!(with(effect) == nominal, "{effect}");
     }

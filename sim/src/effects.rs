@@ -12,6 +12,7 @@ mod delay_line;
 mod drive;
 mod effect;
 mod ground;
+mod idle;
 mod lag;
 mod overlay;
 mod payload;

@@ -3,6 +3,7 @@
 mod gnss;
 mod height_map;
 mod imu;
+mod past;
 mod readings;
 
 pub use gnss::{GnssFix, GnssReceiver};

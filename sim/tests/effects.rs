@@ -5,7 +5,7 @@ use std::path::Path;
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::effects::{CATALOGUE, Effect, Entry, Overlay, Scope};
 use xt28_sim::{
-    Actuation, Effects, Plant, Ramp, RapierBodies, STEP, Terrain, Vehicle, VehicleState,
+    Actuation, Effects, Plant, Ramp, RapierBodies, STEP, Sensors, Terrain, Vehicle, VehicleState,
 };
 
 /// Some numbers of a state.
@@ -99,5 +99,22 @@ fn fades_in(machine: &Machine) {
             let apart = most(signal);
             assert!(apart < bound, "{}: {name} is {apart:e} off", effect.name);
         }
+    }
+}
+
+/// A parameter that is said not to act alone moves nothing and shows in no reading while the others are neutral.
+#[test]
+fn what_does_not_act_alone_changes_no_bit() {
+    let machine = Machine::xt28();
+    let nominal = trace_of(&machine, &Effects::default(), 400);
+    let waiting = CATALOGUE.iter().flat_map(|e| e.parameters).filter(|p| !p.acts_alone);
+    for parameter in waiting {
+        let mut effects = Effects::default();
+        parameter.set(&mut effects, Scope::All, far(parameter.range, parameter.neutral));
+        let with = trace_of(&machine, &effects, 400);
+        assert!(with == nominal, "{} moves something", parameter.name);
+        let (read, as_is) = (Sensors::new(&effects), Sensors::new(&Effects::default()));
+        let shows = nominal.iter().any(|state| read.read(state) != as_is.read(state));
+        assert!(!shows, "{} shows", parameter.name);
     }
 }

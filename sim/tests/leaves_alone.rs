@@ -67,3 +67,26 @@ fn a_sensors_own_fault_shows_in_no_other_sensor() {
     assert!(askew.0 == none.0 && askew.2 == none.2 && askew.1 != none.1, "imu-offset");
     assert!(late.0 == none.0 && late.1 == none.1 && late.2 != none.2, "gnss-latency");
 }
+
+/// Asked at every step or at every second or fourth, a late receiver reads the state of its delay ago.
+#[test]
+fn a_late_receiver_is_as_late_however_often_it_is_asked() {
+    let states = driven();
+    let mut effects = Effects::default();
+    effects.sensors.gnss_latency.delay_s = 0.4;
+    let ago = 80;
+    for every in [1, 2, 4] {
+        let mut receiver = GnssReceiver::new(&Machine::xt28(), &effects, None);
+        let mut fixes = 0;
+        for (step, state) in states.iter().enumerate().step_by(every) {
+            let now = SimTime::ZERO + STEP * u32::try_from(step).unwrap();
+            let fix = receiver.step(now, state);
+            if let (Some(fix), Some(then)) = (fix, step.checked_sub(ago)) {
+                let was_m = states[then].antenna_position_m;
+                assert_eq!(fix.position_m, was_m, "asked every {every} steps, at step {step}");
+                fixes += 1;
+            }
+        }
+        assert!(fixes > 40, "{fixes}");
+    }
+}

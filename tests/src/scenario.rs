@@ -164,15 +164,7 @@ impl Scenario {
                 "needs profile = \"2016\": no cab is heard otherwise".into(),
             );
         }
-        if let Err(error) = UnheardEffect::check(self.profile, &self.effects) {
-            let named = format!("\"{}\"", error.effect);
-            let line = 1 + text.lines().position(|line| line.contains(&named)).unwrap_or(0);
-            return Err(ScenarioError::Value {
-                path: path.to_owned(),
-                line,
-                problem: error.to_string(),
-            });
-        }
+        self.check_effects(text, path)?;
         if let Some((name, problem)) = sense::problem(text, self.duration_s) {
             let (path, line) = (path.to_owned(), line_of(text, &name));
             let problem = format!("{name}: {problem}");
@@ -183,6 +175,25 @@ impl Scenario {
             line: fault.line_in(text, "terrain."),
             problem: format!("[terrain.{}]: {}", fault.table, fault.problem),
         })
+    }
+
+    /// Refuses effects that this profile does not hear of, and those that would do nothing.
+    fn check_effects(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
+        let refuse = |name: &str, before: usize, problem: String| {
+            let named = format!("\"{name}\"");
+            let mut naming = (1..).zip(text.lines()).filter(|(_, line)| line.contains(&named));
+            let line = naming.nth(before).map_or(1, |(line, _)| line);
+            Err(ScenarioError::Value { path: path.to_owned(), line, problem })
+        };
+        if let Err(error) = UnheardEffect::check(self.profile, &self.effects) {
+            return refuse(error.effect, 0, error.to_string());
+        }
+        if let Some((at, problem)) = Entry::idle(&self.effects) {
+            let effect = self.effects[at].effect;
+            let before = self.effects[..at].iter().filter(|entry| entry.effect == effect).count();
+            return refuse(effect.name, before, problem);
+        }
+        Ok(())
     }
 }
 
@@ -313,6 +324,19 @@ stands-still = { below_m_s = 0.02 }
             let error = refused.unwrap_err().to_string();
             assert!(error.starts_with(starts), "{error}");
         }
+    }
+
+    #[test]
+    fn an_effect_that_would_do_nothing_is_refused_with_its_line() {
+        let sag = |scope: &str, key: &str| {
+            format!("[[effect]]\nname = \"unsupported-sag\"\nscope = \"{scope}\"\n{key}\n")
+        };
+        let with = |entries: String| parse(&format!("{GOOD}{entries}"));
+        let (rate, below) = (sag("front", "rate_m_s = 0.01"), sag("all", "below_n = 5e3"));
+        assert!(with(rate.clone() + &below).is_ok());
+        let error = with(rate + &sag("rear", "below_n = 5e3")).unwrap_err().to_string();
+        assert!(error.starts_with("a/ramp.toml:23: unsupported-sag has only below_n"), "{error}");
+        assert!(with(below).unwrap_err().to_string().starts_with("a/ramp.toml:19: "));
     }
 
     #[test]

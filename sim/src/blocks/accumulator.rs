@@ -31,14 +31,15 @@ const ATMOSPHERE_PA: f64 = 1.013e5;
 /// Force against compression of a cylinder with its accumulator.
 ///
 /// Up to the precharge the accumulator is empty and the oil alone gives way; beyond it the gas gives way
-/// as well, by p V^n = constant, and the force rises ever more steeply.
+/// as well, by p V^n = constant, and the force rises ever more steeply. Under a return pressure that alone presses
+/// harder than the precharge it is never empty: the same gas is then shorter and stiffer from the beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accumulator {
-    /// Compression at which oil begins to come in, m.
+    /// Compression at which oil begins to come in, m, from 0 on.
     filling_m: f64,
-    /// Length of the gas if it stood on the bore area, m.
+    /// Length of the gas there if it stood on the bore area, m.
     gas_m: f64,
-    /// Absolute precharge on the bore area, N.
+    /// Its absolute pressure there on the bore area, N: the precharge, or the return's where that is more.
     precharge_n: f64,
     /// What atmosphere and return pressure hold against it, N.
     back_n: f64,
@@ -54,9 +55,12 @@ impl Accumulator {
         let a = &machine.arms;
         let back_n =
             ATMOSPHERE_PA * a.area_bore_m2 + machine.hydraulics.return_pressure_pa * a.area_rod_m2;
-        let precharge_n = (gas.precharge_pa + ATMOSPHERE_PA) * a.area_bore_m2;
+        let empty_n = (gas.precharge_pa + ATMOSPHERE_PA) * a.area_bore_m2;
+        // A return pressure that presses harder has let oil in already: the gas begins shorter, at that pressure.
+        let precharge_n = empty_n.max(back_n);
         let filling_m = (precharge_n - back_n) / OIL_STIFFNESS_N_M;
-        let gas_m = gas.volume_m3 / a.area_bore_m2;
+        let filled = (empty_n / precharge_n).powf(gas.exponent.recip());
+        let gas_m = gas.volume_m3 / a.area_bore_m2 * filled;
         let left = (precharge_n / (a.force_max_n + back_n)).powf(1.0 / gas.exponent);
         let top_m = filling_m.max(a.force_max_n / OIL_STIFFNESS_N_M + gas_m * (1.0 - left));
         Self { filling_m, gas_m, precharge_n, back_n, exponent: gas.exponent, top_m }
@@ -203,6 +207,38 @@ mod tests {
             let slope_n_m = (above - below) / (2.0 * d);
             let [_, said_n_m] = accumulator.spring(compression_m);
             assert!((slope_n_m / said_n_m - 1.0).abs() < 1e-4, "{compression_m}: {slope_n_m}");
+        }
+    }
+
+    /// A return pressure above the precharge has let oil in before anything pushes.
+    #[test]
+    fn force_begins_at_nothing_whatever_the_return_pressure() {
+        for return_pressure_pa in [0.0, 0.5e6, 1.9e6, 2.1e6, 3.0e6, 20.0e6] {
+            let mut machine = Machine::xt28();
+            machine.hydraulics.return_pressure_pa = return_pressure_pa;
+            let gas = AccumulatorGas::default();
+            let accumulator = Accumulator::new(&machine, &gas);
+            let [begins_n, _] = accumulator.spring(1e-12);
+            assert!(begins_n.abs() < 1e-3, "{return_pressure_pa} Pa: {begins_n} N");
+            assert!(accumulator.filling_m >= 0.0, "{return_pressure_pa} Pa");
+            // The gas itself is the same, so that all of it is where it would be at any other return pressure.
+            let back_n = return_pressure_pa * machine.arms.area_rod_m2;
+            for compression_m in [0.01, 0.02] {
+                let [force_n, _] = accumulator.spring(compression_m);
+                let pressure_pa = (force_n + back_n) / machine.arms.area_bore_m2 + ATMOSPHERE_PA;
+                let begun_pa = back_n / machine.arms.area_bore_m2 + ATMOSPHERE_PA;
+                let volume_m3 = |pressure_pa: f64| {
+                    let precharge_pa = gas.precharge_pa + ATMOSPHERE_PA;
+                    gas.volume_m3
+                        * (precharge_pa / pressure_pa.max(precharge_pa)).powf(1.0 / gas.exponent)
+                };
+                let oil_m3 = volume_m3(begun_pa) - volume_m3(pressure_pa);
+                let made_m = force_n / OIL_STIFFNESS_N_M + oil_m3 / machine.arms.area_bore_m2;
+                assert!(
+                    (made_m / compression_m - 1.0).abs() < 1e-9,
+                    "{return_pressure_pa} Pa: {made_m}"
+                );
+            }
         }
     }
 

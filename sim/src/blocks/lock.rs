@@ -117,17 +117,21 @@ mod tests {
     }
 
     proptest! {
-        /// Over the ranges of the catalogue, from an empty accumulator to beyond the relief valve.
+        /// Over the ranges of the catalogue, from an empty accumulator to beyond the relief valve, and with return
+        /// pressures that never leave it empty.
         #[test]
         fn compression_inverts_force_whatever_the_gas(
             share in 0.0..=1.0,
             precharge_pa in 0.5e6..15.0e6,
             volume_m3 in 0.1e-3..5.0e-3,
             exponent in 1.0..1.8,
+            return_pressure_pa in 0.0..6.0e6,
             force_n in -300e3..300e3,
         ) {
             let gas = AccumulatorGas { share, precharge_pa, volume_m3, exponent };
-            let lock = Lock::new(&Machine::xt28(), &ArmEffects { gas, ..ArmEffects::default() });
+            let mut machine = Machine::xt28();
+            machine.hydraulics.return_pressure_pa = return_pressure_pa;
+            let lock = Lock::new(&machine, &ArmEffects { gas, ..ArmEffects::default() });
             let [made_n, slope_n_m] = lock.spring(lock.compression_m(force_n));
             prop_assert!((made_n - force_n).abs() < 1e-3, "{made_n}");
             prop_assert!(slope_n_m > 0.0);

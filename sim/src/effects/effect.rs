@@ -71,6 +71,9 @@ pub struct Parameter {
     pub tolerance: f64,
     /// Values the law is made for, ends included.
     pub range: [f64; 2],
+    /// Whether it changes anything while the effect's other parameters are neutral. One that does not says where,
+    /// when or how fast another one acts, as where a load lies that weighs nothing.
+    pub acts_alone: bool,
     /// Where it sits.
     pub slot: Slot,
 }

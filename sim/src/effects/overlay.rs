@@ -8,7 +8,9 @@
 //! delay_s = 0.2
 //! ```
 //!
-//! One that adds nothing says so, `effect = []`: a file without a word of effects is more likely another file.
+//! One that adds nothing says so, `effect = []`: a file without a word of effects is more likely another file. An
+//! entry that would do nothing is refused: without a value, or with those only that say where, when or how fast
+//! another parameter acts, where no entry on its wheels sets that one.
 
 use core::fmt::Write as _;
 use std::collections::BTreeMap;
@@ -125,7 +127,10 @@ impl Overlay {
                 refuse(at_key.unwrap_or(draft.span().start), problem)
             })
         };
-        let entries = listed.iter().map(entry).collect::<Result<_, _>>()?;
+        let entries = listed.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
+        if let Some((at, problem)) = Entry::idle(&entries) {
+            return Err(refuse(listed[at].span().start, problem));
+        }
         Ok(Self { entries })
     }
 

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use xt28_machine::{Machine, SimTime};
 
-use crate::effects::DelayLine;
+use super::past::Past;
 use crate::{Effects, VehicleState};
 
 /// One fix of the antenna's position in the local frame: x east, y north, z up.
@@ -31,49 +31,9 @@ pub struct GnssReceiver {
     period: Duration,
     due: SimTime,
     accuracy_m: f64,
-    delay_s: f64,
-    /// None before the first look.
+    /// None where a fix is as old as it says.
     past: Option<Past>,
     noise: Option<Noise>,
-}
-
-/// How often a late receiver looks at the antenna, s.
-const LOOK_S: f64 = 0.01;
-
-/// Where the antenna was, for a receiver that is late.
-#[derive(Clone, Debug)]
-struct Past {
-    position: [DelayLine; 3],
-    velocity: [DelayLine; 3],
-    /// Cosine and sine: an angle would jump at half a turn.
-    heading: [DelayLine; 2],
-}
-
-impl Past {
-    /// An antenna that has been for long where `state` has it.
-    fn new(state: &VehicleState, delay_s: f64) -> Self {
-        let line = |value| DelayLine::new(delay_s, LOOK_S, value);
-        Self {
-            position: state.antenna_position_m.map(line),
-            velocity: state.antenna_velocity_m_s.map(line),
-            heading: [line(state.yaw_rad.cos()), line(state.yaw_rad.sin())],
-        }
-    }
-
-    /// Takes in where the antenna is; gives the state with the antenna where it was.
-    fn step(&mut self, state: &VehicleState, delay_s: f64) -> VehicleState {
-        let mut then = *state;
-        for axis in 0..3 {
-            let now = state.antenna_position_m[axis];
-            then.antenna_position_m[axis] = self.position[axis].step(now, delay_s, LOOK_S);
-            let now = state.antenna_velocity_m_s[axis];
-            then.antenna_velocity_m_s[axis] = self.velocity[axis].step(now, delay_s, LOOK_S);
-        }
-        let cos = self.heading[0].step(state.yaw_rad.cos(), delay_s, LOOK_S);
-        let sin = self.heading[1].step(state.yaw_rad.sin(), delay_s, LOOK_S);
-        then.yaw_rad = sin.atan2(cos);
-        then
-    }
 }
 
 #[derive(Clone, Debug)]
@@ -90,13 +50,13 @@ impl GnssReceiver {
     #[must_use]
     pub fn new(machine: &Machine, effects: &Effects, seed: Option<u64>) -> Self {
         let s = &machine.sensors;
+        let delay_s = effects.sensors.gnss_latency.delay_s;
         let normal = |sigma: f64| Normal::new(0.0, sigma.max(0.0)).expect("a finite deviation");
         Self {
             period: Duration::from_secs_f64(1.0 / s.gnss_rate_hz),
             due: SimTime::ZERO,
             accuracy_m: s.gnss_position_m,
-            delay_s: effects.sensors.gnss_latency.delay_s,
-            past: None,
+            past: (delay_s > 0.0).then(|| Past::new(delay_s)),
             noise: seed.map(|seed| Noise {
                 random: ChaCha8Rng::seed_from_u64(seed),
                 position_m: normal(s.gnss_position_m),
@@ -107,12 +67,10 @@ impl GnssReceiver {
         }
     }
 
-    /// The fix that is due at `now`, if one is. To be asked every 10 ms.
+    /// The fix that is due at `now`, if one is. To be asked every 10 ms: a fix comes when it is first asked for, and
+    /// asked less often a late one is less exact where the antenna does not go straight.
     pub fn step(&mut self, now: SimTime, state: &VehicleState) -> Option<GnssFix> {
-        let late = (self.delay_s > 0.0).then(|| {
-            let past = self.past.get_or_insert_with(|| Past::new(state, self.delay_s));
-            past.step(state, self.delay_s)
-        });
+        let late = self.past.as_mut().map(|past| past.step(now, state));
         let state = late.as_ref().unwrap_or(state);
         if now < self.due {
             return None;
@@ -192,7 +150,7 @@ mod tests {
         let mut receiver = GnssReceiver::new(&Machine::xt28(), &effects, None);
         let mut fixes = 0;
         for tick in 0..200 {
-            let t = f64::from(tick) * LOOK_S;
+            let t = f64::from(tick) * 0.01;
             let state = VehicleState {
                 antenna_position_m: [1.5 * t, 0.0, 3.0],
                 antenna_velocity_m_s: [1.5, 0.0, 0.0],

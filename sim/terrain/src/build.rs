@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::canvas::Canvas;
+use crate::layers::boulders::DRAWS_TOTAL;
 use crate::{Fault, Plane, Slope, Terrain, TerrainError, TerrainSpec};
 
 impl TerrainSpec {
@@ -27,12 +28,10 @@ impl TerrainSpec {
                 + sum(&self.bumps, |bumps| bumps.height_m(x, y))
                 + sum(&self.course, |course| course.height_m(x, y))
         });
+        let mut draws_left = DRAWS_TOTAL;
         for (index, boulders) in self.boulders.iter().enumerate() {
-            boulders.add_to(&mut canvas, self.grid).map_err(|problem| Fault {
-                table: "boulders",
-                index,
-                problem,
-            })?;
+            let added = boulders.add_to(&mut canvas, self.grid, &mut draws_left);
+            added.map_err(|problem| Fault { table: "boulders", index, problem })?;
         }
         for height_map in &self.height_map {
             height_map.add_to(&mut canvas)?;

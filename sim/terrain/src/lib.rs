@@ -64,7 +64,8 @@
 //! ```
 //!
 //! A height map comes from a file beside the TOML: an ESRI ASCII grid, a GeoTIFF in metres, or a grey
-//! PNG of 8 or 16 bits.
+//! PNG of 8 or 16 bits. A GeoTIFF that names its system and no unit is taken if that system is known to be in metres,
+//! and refused otherwise: it may be in feet.
 //!
 //! ```toml
 //! [[height_map]]
@@ -82,6 +83,10 @@
 //!
 //! A file of one layer may say `kind = "ramp"` and the layer's keys without a header; level ground is
 //! `kind = "flat"`.
+//!
+//! What would take minutes is refused: more than 2^30 heights to be worked out by all layers together (a height for
+//! each grid point, octave or point under a boulder, and 2^24 for a file), boulders that find room only after ten
+//! million draws, and files above 512 MiB.
 //!
 //! # Beyond the grid
 //!
@@ -105,6 +110,7 @@ mod search;
 mod spec;
 mod stance;
 mod terrain;
+mod work;
 
 pub use error::TerrainError;
 pub use extent::Extent;

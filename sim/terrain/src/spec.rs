@@ -140,6 +140,7 @@ impl TerrainSpec {
         each("boulders", &self.boulders, |layer| layer.check_room(self.grid))?;
         each("height_map", &self.height_map, HeightMap::check)?;
         each("grid", &[self.grid], Extent::check)?;
+        self.check_work()?;
         each("map", std::slice::from_ref(&self.map), MapSpec::check)
     }
 

@@ -35,6 +35,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.3,
             range: [0.0, 1.0],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.share),
         },
         Parameter {
@@ -42,6 +43,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.5e6,
             tolerance: 0.5e6,
             range: [0.5e6, 15.0e6],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.precharge_pa),
         },
         Parameter {
@@ -49,6 +51,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0e-3,
             tolerance: 0.3e-3,
             range: [0.1e-3, 5.0e-3],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.volume_m3),
         },
         Parameter {
@@ -56,6 +59,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.3,
             tolerance: 0.15,
             range: [1.0, 1.8],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].gas.exponent),
         },
     ],

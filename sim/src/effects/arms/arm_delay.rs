@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.02,
         range: [0.0, 1.0],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].delay.delay_s),
     }],
 };

@@ -29,6 +29,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 5.0e-4,
         range: [0.0, 0.05],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].leakage.rate_m_s),
     }],
 };

@@ -51,6 +51,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.01,
             range: [0.0, 0.15],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].load_dependence.droop),
         },
         Parameter {
@@ -58,6 +59,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 2.0e6,
             range: [0.0, 2.0e7],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.arms[wheel].load_dependence.set_at_pa
             }),
@@ -67,6 +69,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.3,
             range: [0.0, 4.0],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.arms[wheel].load_dependence.contraction_factor
             }),

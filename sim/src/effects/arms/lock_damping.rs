@@ -26,6 +26,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 1.0,
         tolerance: 0.3,
         range: [0.1, 5.0],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].lock_damping.factor),
     }],
 };

@@ -27,6 +27,7 @@ pub static LOCK_STIFFNESS: Effect = Effect {
         neutral: 1.0,
         tolerance: 0.05,
         range: [0.5, 2.0],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].lock_stiffness.factor),
     }],
 };

@@ -57,6 +57,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: AMPLE_M3_S,
         tolerance: 0.004,
         range: [0.000_3, AMPLE_M3_S],
+        acts_alone: true,
         slot: Slot::Whole(|effects| &mut effects.pump_flow.flow_m3_s),
     }],
 };

@@ -83,6 +83,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 1500.0,
             range: [0.0, 30_000.0],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].stiction.coulomb_n),
         },
         Parameter {
@@ -90,6 +91,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 1000.0,
             range: [0.0, 30_000.0],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].stiction.stribeck_n),
         },
         Parameter {
@@ -97,6 +99,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.01,
             tolerance: 0.005,
             range: [0.001, 0.1],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.arms[wheel].stiction.stribeck_speed_m_s
             }),

@@ -32,6 +32,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.003,
             range: [0.0, 0.1],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].sag.rate_m_s),
         },
         Parameter {
@@ -39,6 +40,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 5e3,
             range: [-10e3, 40e3],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].sag.below_n),
         },
     ],

@@ -30,6 +30,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.03,
         range: [0.0, 0.5],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.arms[wheel].hysteresis.width),
     }],
 };

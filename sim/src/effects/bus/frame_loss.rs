@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.001,
         range: [0.0, 0.9],
+        acts_alone: true,
         slot: Slot::Whole(|effects| &mut effects.bus.frame_loss.share),
     }],
 };

@@ -35,6 +35,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.05,
             range: [0.0, 3.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.drive.lag.time_constant_s),
         },
         Parameter {
@@ -42,6 +43,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.05,
             range: [0.0, 0.3],
+            acts_alone: false,
             slot: Slot::Whole(|effects| &mut effects.drive.lag.lead_s),
         },
     ],

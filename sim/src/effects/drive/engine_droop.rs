@@ -37,6 +37,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 5.0e-7,
             range: [0.0, 1.0e-4],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.drive.engine_droop.droop_per_w),
         },
         Parameter {
@@ -44,6 +45,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.05,
             range: [0.005, 2.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.drive.engine_droop.power_factor),
         },
     ],

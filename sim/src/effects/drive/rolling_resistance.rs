@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.01,
         range: [-0.02, 0.5],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].rolling_resistance.added),
     }],
 };

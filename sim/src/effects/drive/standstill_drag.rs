@@ -32,6 +32,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 200.0,
         range: [0.0, 20_000.0],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].standstill_drag.torque_nm),
     }],
 };

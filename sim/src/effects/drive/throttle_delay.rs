@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.03,
         range: [0.0, 1.5],
+        acts_alone: true,
         slot: Slot::Whole(|effects| &mut effects.drive.throttle_delay.delay_s),
     }],
 };

@@ -24,6 +24,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.004,
             range: [-0.5, 0.5],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.slope.grade_x_rad),
         },
         Parameter {
@@ -31,6 +32,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.004,
             range: [-0.5, 0.5],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.slope.grade_y_rad),
         },
     ],

@@ -26,6 +26,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.03,
             range: [-1.0, 1.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.masses.com_shift.x_m),
         },
         Parameter {
@@ -33,6 +34,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.015,
             range: [-0.5, 0.5],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.masses.com_shift.y_m),
         },
         Parameter {
@@ -40,6 +42,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.05,
             range: [-0.7, 0.7],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.masses.com_shift.z_m),
         },
     ],

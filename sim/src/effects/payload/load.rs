@@ -34,6 +34,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 200.0,
             range: [0.0, 14_000.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.masses.payload.mass_kg),
         },
         Parameter {
@@ -41,6 +42,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.3,
             range: [-1.5, 1.5],
+            acts_alone: false,
             slot: Slot::Whole(|effects| &mut effects.masses.payload.longitudinal_m),
         },
         Parameter {
@@ -48,6 +50,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.15,
             range: [-0.8, 0.8],
+            acts_alone: false,
             slot: Slot::Whole(|effects| &mut effects.masses.payload.lateral_m),
         },
         Parameter {
@@ -55,6 +58,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.8,
             tolerance: 0.3,
             range: [0.8, 3.0],
+            acts_alone: false,
             slot: Slot::Whole(|effects| &mut effects.masses.payload.height_m),
         },
     ],

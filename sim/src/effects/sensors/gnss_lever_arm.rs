@@ -23,6 +23,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.05,
             range: [-3.0, 3.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.sensors.gnss_lever_arm.x_m),
         },
         Parameter {
@@ -30,6 +31,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.05,
             range: [-2.0, 2.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.sensors.gnss_lever_arm.y_m),
         },
     ],

@@ -38,6 +38,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.004,
             range: [-0.3, 0.3],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.sensors.imu_offset.roll_rad),
         },
         Parameter {
@@ -45,6 +46,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.004,
             range: [-0.3, 0.3],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.sensors.imu_offset.pitch_rad),
         },
     ],

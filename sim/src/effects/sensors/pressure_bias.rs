@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 5.0e4,
         range: [-5.0e6, 5.0e6],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].pressure_bias.bias_pa),
     }],
 };

@@ -38,6 +38,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.01,
             range: [0.5, 1.5],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].pressure_scale.factor),
         },
         Parameter {
@@ -45,6 +46,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.1,
             range: [0.0, 1.0],
+            acts_alone: false,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].pressure_scale.rod_share
             }),

@@ -20,6 +20,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.001,
         range: [-0.1, 0.1],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].stroke_bias.bias_m),
     }],
 };

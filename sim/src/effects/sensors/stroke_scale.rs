@@ -26,6 +26,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 1.0,
         tolerance: 0.005,
         range: [0.5, 1.5],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].stroke_scale.factor),
     }],
 };

@@ -27,6 +27,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 1.0,
         tolerance: 0.01,
         range: [0.5, 1.5],
+        acts_alone: true,
         slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].wheel_speed_scale.factor),
     }],
 };

@@ -29,6 +29,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 0.03,
             range: [0.0, 5.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.steering.rear_follower.time_constant_s),
         },
         Parameter {
@@ -36,6 +37,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.05,
             range: [0.0, 2.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.steering.rear_follower.ratio_factor),
         },
     ],

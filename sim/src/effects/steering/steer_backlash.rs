@@ -29,6 +29,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 0.0,
         tolerance: 0.005,
         range: [0.0, 0.2],
+        acts_alone: true,
         slot: Slot::Whole(|effects| &mut effects.steering.backlash.width_rad),
     }],
 };

@@ -29,6 +29,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.05,
             range: [0.1, 5.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.steering.gain.kp_factor),
         },
         Parameter {
@@ -36,6 +37,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 1.0,
             tolerance: 0.05,
             range: [0.0, 5.0],
+            acts_alone: true,
             slot: Slot::Whole(|effects| &mut effects.steering.gain.ki_factor),
         },
     ],

@@ -26,6 +26,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
         neutral: 1.0,
         tolerance: 0.1,
         range: [0.1, 3.0],
+        acts_alone: true,
         slot: Slot::Whole(|effects| &mut effects.steering.rate.factor),
     }],
 };

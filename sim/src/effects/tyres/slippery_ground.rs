@@ -34,6 +34,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             tolerance: 0.3,
             // Wet ice has some 0.03 to 0.05, where 0.7 is believed.
             range: [0.05, 2.0],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].slippery_ground.friction_factor
             }),
@@ -45,6 +46,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             // Below nothing only as far as a wheel may be larger than believed: what travels further than its
             // wheels say by more does not slip.
             range: [-0.04, 0.9],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| &mut effects.wheels[wheel].slippery_ground.slip),
         },
         Parameter {
@@ -52,6 +54,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: 0.0,
             tolerance: 1.0e-5,
             range: [0.0, 1.0e-3],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].slippery_ground.creep_m_s_n
             }),

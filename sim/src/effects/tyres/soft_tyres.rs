@@ -45,6 +45,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: NEAR_RIGID.stiffness_n_m,
             tolerance: 4.0e5,
             range: [1.5e5, 2.0e7],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].soft_tyre.stiffness_n_m
             }),
@@ -54,6 +55,7 @@ pub(in crate::effects) const EFFECT: Effect = Effect {
             neutral: NEAR_RIGID.damping_n_s_m,
             tolerance: 3.0e3,
             range: [0.0, 2.0e5],
+            acts_alone: true,
             slot: Slot::PerWheel(|effects, wheel| {
                 &mut effects.wheels[wheel].soft_tyre.damping_n_s_m
             }),

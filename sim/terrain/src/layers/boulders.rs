@@ -8,11 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::Extent;
 use crate::canvas::Canvas;
+use crate::grid::PER_M;
 
 /// Most boulders of one layer.
 const COUNT_MAX: u32 = 100_000;
 /// How often a boulder is drawn again because it lies on the clear area.
 const DRAWS_MAX: u32 = 10_000;
+/// Draws for all boulders of a terrain together: a hundred for each of [`COUNT_MAX`], a second's work.
+pub(crate) const DRAWS_TOTAL: u32 = 100 * COUNT_MAX;
 
 /// Boulders strewn evenly over the grid, but for a clear area where the machine starts.
 ///
@@ -91,14 +94,33 @@ impl Boulders {
     /// The boulders as they lie in `extent`.
     ///
     /// Fewer than asked for only if the clear area leaves all but no room: of a density those that
-    /// fitted, of a count those before the first that did not.
+    /// fitted, of a count those before the first that did not, and of either those of ten million draws.
     #[must_use]
     pub fn placed(&self, extent: Extent) -> Vec<Boulder> {
-        let drawn = (0..self.number(extent)).map(|index| self.draw(extent, index));
-        if self.count.is_some() {
-            return drawn.map_while(|boulder| boulder).collect();
+        let mut draws_left = DRAWS_TOTAL;
+        self.strewn(extent, &mut draws_left)
+    }
+
+    /// The boulders that find room in as many draws, which it counts down.
+    fn strewn(&self, extent: Extent, draws_left: &mut u32) -> Vec<Boulder> {
+        let mut boulders = Vec::new();
+        for index in 0..self.number(extent) {
+            match self.draw(extent, index, draws_left) {
+                Some(boulder) => boulders.push(boulder),
+                None if self.count.is_some() || *draws_left == 0 => break,
+                None => {}
+            }
         }
-        drawn.flatten().collect()
+        boulders
+    }
+
+    /// Heights to be worked out for them on a grid of so many points: for each boulder as many as the square around
+    /// the greatest has.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    pub(crate) fn heights(&self, extent: Extent, points: u64) -> u64 {
+        let across = (2.0 * self.radius_m[1] * PER_M) as u64 + 1;
+        let each = points.min(across * across);
+        points + u64::from(self.number(extent)) * each
     }
 
     /// Whether some boulder of this reach fits on the grid beside the clear area.
@@ -117,7 +139,7 @@ impl Boulders {
         self.count.or(by_density).unwrap_or(0).min(COUNT_MAX)
     }
 
-    fn draw(&self, extent: Extent, index: u32) -> Option<Boulder> {
+    fn draw(&self, extent: Extent, index: u32, draws_left: &mut u32) -> Option<Boulder> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         rng.set_stream(u64::from(index));
         let mut between = |[low, high]: [f64; 2]| low + (high - low) * rng.random::<f64>();
@@ -127,8 +149,9 @@ impl Boulders {
         if !self.fits(extent, radius_m[0].max(radius_m[1])) {
             return None;
         }
-        (0..DRAWS_MAX)
+        (0..DRAWS_MAX.min(*draws_left))
             .map(|_| {
+                *draws_left -= 1;
                 let centre_m = [between(extent.x_m), between(extent.y_m)];
                 Boulder { centre_m, radius_m, height_m, along: [cos, sin] }
             })
@@ -142,10 +165,23 @@ impl Boulders {
     /// Adds them to a canvas; where boulders overlap, the higher counts.
     ///
     /// # Errors
-    /// A sentence, where fewer than `count` found room.
-    pub(crate) fn add_to(&self, canvas: &mut Canvas, extent: Extent) -> Result<(), String> {
+    /// A sentence, where fewer than `count` found room, or no draws were left.
+    pub(crate) fn add_to(
+        &self,
+        canvas: &mut Canvas,
+        extent: Extent,
+        draws_left: &mut u32,
+    ) -> Result<(), String> {
         let mut top_m = vec![0.0_f64; canvas.len()];
-        let boulders = self.placed(extent);
+        let boulders = self.strewn(extent, draws_left);
+        let number = self.number(extent);
+        if *draws_left == 0 && boulders.len() < number as usize {
+            let found = boulders.len();
+            return Err(format!(
+                "clear leaves so little room that the {DRAWS_TOTAL} draws of a terrain placed {found} of \
+                 {number} boulders; give fewer, a smaller clear area or a greater grid"
+            ));
+        }
         if let Some(count) = self.count.filter(|&count| boulders.len() < count as usize) {
             let found = boulders.len();
             return Err(format!(
@@ -231,7 +267,7 @@ mod tests {
 
     fn grid(boulders: &Boulders) -> crate::Grid {
         let mut canvas = Canvas::new(Extent::default());
-        boulders.add_to(&mut canvas, Extent::default()).unwrap();
+        boulders.add_to(&mut canvas, Extent::default(), &mut DRAWS_TOTAL.clone()).unwrap();
         canvas.into_grid([0.0; 2])
     }
 
@@ -327,5 +363,11 @@ mod tests {
             "{error}"
         );
         assert_eq!(Boulders { count: Some(50), ..strip(5.0) }.placed(grid).len(), 50);
+        // All fit, but each only in one draw of some two hundred.
+        let slit = Boulders { radius_m: [0.3, 0.3], ..strip(0.635) };
+        let spec = crate::TerrainSpec { boulders: vec![slit], ..crate::TerrainSpec::default() };
+        let error = spec.build().unwrap_err().to_string();
+        assert!(error.contains("[boulders]: clear leaves so little room"), "{error}");
+        assert!(error.contains("of 100000 boulders"), "{error}");
     }
 }

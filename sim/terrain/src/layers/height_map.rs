@@ -1,5 +1,7 @@
 //! A height map from a file, laid onto the grid.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -7,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::TerrainError;
 use crate::canvas::Canvas;
 use crate::raster::png::Scale;
-use crate::raster::{Raster, ascii_grid, geotiff, png};
+use crate::raster::{Raster, SAMPLES_MAX, ascii_grid, geotiff, png};
 
 /// A height map from a file: ESRI ASCII grid (`.asc`), GeoTIFF (`.tif`) or grey PNG (`.png`).
 ///
@@ -40,6 +42,8 @@ pub struct HeightMap {
     pub white_m: Option<f64>,
 }
 
+/// Most bytes of a file: 32 for each of the most samples, more than anyone writes for one in any of the formats.
+const BYTES_MAX: u64 = 32 * SAMPLES_MAX;
 /// No ground is higher, nor deeper, m: what else a file says is its word for no data.
 const HEIGHT_MAX_M: f32 = 9e3;
 /// What to do about a height that is none.
@@ -116,13 +120,39 @@ impl HeightMap {
 
     /// Adds its heights to a canvas.
     pub(crate) fn add_to(&self, canvas: &mut Canvas) -> Result<(), TerrainError> {
-        let bytes = std::fs::read(&self.file).map_err(|source| TerrainError::Read {
+        let bytes = self.bytes()?;
+        self.lay(&bytes, canvas).map_err(|problem| refuse(&self.file, problem))
+    }
+
+    /// What the file holds, once its size is known to be one of a height map: a pipe or a device has none.
+    fn bytes(&self) -> Result<Vec<u8>, TerrainError> {
+        let unread = |source| TerrainError::Read {
             path: self.file.clone(),
             what: "height map",
             remedy: "its path is relative to the file that names it",
             source,
-        })?;
-        self.lay(&bytes, canvas).map_err(|problem| refuse(&self.file, problem))
+        };
+        let meta = std::fs::metadata(&self.file).map_err(unread)?;
+        if !meta.is_file() {
+            let problem = "it is no plain file; give a height map that is one".to_owned();
+            return Err(refuse(&self.file, problem));
+        }
+        let mut bytes = Vec::new();
+        if meta.len() <= BYTES_MAX {
+            // It may grow meanwhile.
+            let file = File::open(&self.file).map_err(unread)?;
+            file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(unread)?;
+        }
+        let length = meta.len().max(bytes.len() as u64);
+        if length > BYTES_MAX {
+            return Err(refuse(
+                &self.file,
+                format!(
+                    "{length} bytes are more than {BYTES_MAX}; cut the map to the area driven on"
+                ),
+            ));
+        }
+        Ok(bytes)
     }
 
     fn lay(&self, bytes: &[u8], canvas: &mut Canvas) -> Result<(), String> {

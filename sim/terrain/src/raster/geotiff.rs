@@ -1,5 +1,7 @@
 //! GeoTIFF: one band of heights, placed by its tags (OGC 19-008r4), in metres.
 
+mod units;
+
 use std::io::Cursor;
 
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -8,14 +10,9 @@ use tiff::{ColorType, TiffError};
 
 use super::{Raster, SAMPLES_MAX, check_size};
 
-/// Geo keys that we look at, and their values.
-const MODEL_TYPE: u16 = 1024;
-const MODEL_GEOGRAPHIC: u16 = 2;
+/// A geo key, and a value of it.
 const RASTER_TYPE: u16 = 1025;
 const RASTER_POINT: u16 = 2;
-const PLAN_UNIT: u16 = 3076;
-const HEIGHT_UNIT: u16 = 4099;
-const METRE: u16 = 9001;
 /// Photometric interpretation of samples that count down from white (TIFF 6.0, page 37).
 const WHITE_IS_ZERO: u32 = 0;
 /// GDAL's own tag for what no other tag holds, in XML.
@@ -52,7 +49,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Raster, String> {
             .to_owned());
     }
     let keys = geo_keys(&mut tiff).map_err(say)?;
-    check_units(&keys)?;
+    units::check(&keys)?;
     let metadata = text(&mut tiff, Tag::Unknown(GDAL_METADATA)).unwrap_or_default();
     if metadata.contains("role=\"scale\"") || metadata.contains("role=\"offset\"") {
         return Err(
@@ -111,21 +108,6 @@ fn geo_keys(tiff: &mut Tiff<'_>) -> Result<Vec<(u16, u16)>, TiffError> {
     let directory = directory.into_u16_vec()?;
     let entries = directory.chunks_exact(4).skip(1);
     Ok(entries.filter(|entry| entry[1] == 0).map(|entry| (entry[0], entry[3])).collect())
-}
-
-fn check_units(keys: &[(u16, u16)]) -> Result<(), String> {
-    if keys.contains(&(MODEL_TYPE, MODEL_GEOGRAPHIC)) {
-        return Err("it lies in degrees; `gdalwarp -t_srs EPSG:3006` makes it metres (Sweden; elsewhere another code)".to_owned());
-    }
-    for (key, what) in [(PLAN_UNIT, "plan"), (HEIGHT_UNIT, "heights")] {
-        let unit = keys.iter().find(|(found, _)| *found == key);
-        if let Some((_, code)) = unit.filter(|(_, code)| *code != METRE) {
-            return Err(format!(
-                "its {what} are in EPSG unit {code}, not in metres ({METRE}); reproject it with `gdalwarp`"
-            ));
-        }
-    }
-    Ok(())
 }
 
 fn text(tiff: &mut Tiff<'_>, tag: Tag) -> Option<String> {
@@ -255,9 +237,10 @@ mod tests {
     #[test]
     fn what_is_not_in_metres_or_not_placed_is_refused_with_the_remedy() {
         let cases = [
-            (floats(&[MODEL_TYPE, 0, 1, MODEL_GEOGRAPHIC], None), "in degrees", "gdalwarp"),
-            (floats(&[PLAN_UNIT, 0, 1, 9003], None), "plan are in EPSG unit 9003", "gdalwarp"),
-            (floats(&[HEIGHT_UNIT, 0, 1, 9002], None), "heights are in", "gdalwarp"),
+            (floats(&[1024, 0, 1, 2], None), "in degrees", "gdalwarp"),
+            (floats(&[3076, 0, 1, 9003], None), "plan are in EPSG unit 9003", "gdalwarp"),
+            (floats(&[4099, 0, 1, 9002], None), "heights are in", "gdalwarp"),
+            (floats(&[3072, 0, 1, 2272], None), "in EPSG system 2272", "gdal_translate"),
             (floats(&[], Some("none")), "no-data value `none`", "-a_nodata"),
             (floats(&[], Some("\n9")), "no-data value `\\n9`", "-a_nodata"),
             (write::<colortype::RGB8>(&[0; 18], &[], None), "RGB(8)", "-b 1"),

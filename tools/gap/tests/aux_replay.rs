@@ -52,7 +52,7 @@ const KEPT: &[(&str, f64)] = &[
     ("joint.", 0.35),
     ("wheel_speed.", 0.015),
     ("attitude.", 0.25),
-    ("wheel_load.sum", 1.5),
+    ("wheel_load.sum", 0.5),
 ];
 
 /// Signals of `report` that are further off than what is kept to.

@@ -124,9 +124,11 @@ impl Drive {
         let droop = &self.effects.engine_droop;
         let governed_rpm = input.engine_speed_rpm;
         let felt_w = state.felt_power_w.step(state.power_w, ENGINE_ANSWER_S, dt_s);
-        let engine_speed_rpm = governed_rpm * droop.speed_share(felt_w);
+        let speed_share = droop.speed_share(felt_w);
+        // Displacements come late; what an engine droops by is in the oil at once.
+        let targets = self.targets_rad_s(state, input, dt_s).map(|target| target * speed_share);
+        let engine_speed_rpm = governed_rpm * speed_share;
         let input = &DriveInput { engine_speed_rpm, ..*input };
-        let targets = self.targets_rad_s(state, input, dt_s);
         let means = [0, 1].map(|c| self.mean_rad_s(c, input));
         let mean_error = (targets[0] + targets[1] - means[0] - means[1]) / 2.0;
 
@@ -338,6 +340,23 @@ mod tests {
         let mut resumed = drive.resumed(&input(1.0, 0.3), &out.wheel_torque_nm, DT_S);
         let next = drive.step(&mut resumed, &input(1.0, 0.3), DT_S);
         assert!((next.wheel_torque_nm.sum() / out.wheel_torque_nm.sum() - 1.0).abs() < 1e-6);
+    }
+
+    /// A throttle that comes late delays displacements; an engine that gives way is felt at once.
+    #[test]
+    fn an_engine_s_droop_does_not_wait_for_the_throttle() {
+        let engine_droop = EngineDroop { droop_per_w: 5.0e-6, power_factor: 1.0 };
+        let loaded = |delay_s: f64| {
+            let throttle_delay = ThrottleDelay { delay_s };
+            let effects = DriveEffects { engine_droop, throttle_delay, ..DriveEffects::default() };
+            let drive = with(effects);
+            let mut state = drive.resumed(&input(1.0, 0.66), &PerWheel::splat(2e3), DT_S);
+            let mut after = || drive.step(&mut state, &input(1.0, 0.6), DT_S);
+            (0..60).map(|_| after().wheel_torque_nm.sum()).collect::<Vec<f64>>()
+        };
+        for (late_nm, prompt_nm) in loaded(0.5).iter().zip(loaded(0.0)) {
+            assert!((late_nm / prompt_nm - 1.0).abs() < 1e-6, "{late_nm}, not {prompt_nm} Nm");
+        }
     }
 
     #[test]

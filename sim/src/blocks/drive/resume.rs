@@ -17,11 +17,10 @@ impl Drive {
         let delay_s = self.effects.throttle_delay.delay_s;
         let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
         let share = self.effects.engine_droop.speed_share(power_w);
-        let input = &DriveInput { engine_speed_rpm: input.engine_speed_rpm * share, ..*input };
         let targets = [0, 1].map(|c| self.target_rad_s(c, input));
         let held_nm = [0, 1].map(|c| {
             let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
-            circuit_nm - self.circuit_gain_nms * (targets[c] - self.mean_rad_s(c, input))
+            circuit_nm - self.circuit_gain_nms * (share * targets[c] - self.mean_rad_s(c, input))
         });
         DriveState {
             asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
@@ -41,10 +40,11 @@ impl Drive {
         speed_rad_s: &PerWheel<f64>,
         torque_nm: &PerWheel<f64>,
     ) {
+        let share = self.effects.engine_droop.speed_share(state.felt_power_w.value());
         let measured = DriveInput { wheel_speed_rad_s: *speed_rad_s, ..*input };
         let held_nm = [0, 1].map(|c| {
             let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
-            let target = state.target_rad_s[c].value();
+            let target = share * state.target_rad_s[c].value();
             let (wanted, is) = (self.mean_rad_s(c, &measured), self.mean_rad_s(c, input));
             circuit_nm - self.circuit_gain_nms * (target - wanted)
                 + HOLDING_GAIN * self.circuit_gain_nms * (wanted - is)

@@ -127,7 +127,7 @@ impl Bench {
     }
 
     /// Both ECUs in one: what they would carry out.
-    fn take(&mut self, frame: &Frame) {
+    pub(crate) fn take(&mut self, frame: &Frame) {
         match frame.id() {
             ArmTarget::ID => {
                 let target = ArmTarget::decode(frame).unwrap();
@@ -156,7 +156,7 @@ impl Bench {
         }
     }
 
-    fn frames(&mut self, o: &gateway::Observation) -> Vec<Frame> {
+    pub(crate) fn frames(&mut self, o: &gateway::Observation) -> Vec<Frame> {
         let [fr_mm, fl_mm, mr_mm, ml_mm, br_mm, bl_mm] = o.stroke_m.0.map(|m| (m * 1e3).floor());
         let [fr_dan, fl_dan, mr_dan, ml_dan, br_dan, bl_dan] = o.load_n.0.map(|n| n / 10.0);
         let [fr_rpm, fl_rpm, mr_rpm, ml_rpm, br_rpm, bl_rpm] =

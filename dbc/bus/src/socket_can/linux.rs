@@ -8,6 +8,7 @@ use std::time::SystemTime;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
+use socket2::SockRef;
 use socketcan::{CanDataFrame, CanFrame, CanSocket, EmbeddedFrame, Socket, SocketOptions};
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
@@ -72,6 +73,16 @@ impl SocketCan {
     pub fn starting_at(mut self, zero: SystemTime) -> Self {
         self.zero = zero;
         self
+    }
+
+    /// Sets the priority of its frames in the interface's queues (`SO_PRIORITY` of socket(7)): 0 unless set, 6 at most
+    /// without a privilege. What queues make of it is told them by tc(8).
+    ///
+    /// # Errors
+    /// What the kernel says, as to a higher one.
+    pub fn with_priority(self, priority: u32) -> io::Result<Self> {
+        SockRef::from(&self.socket).set_priority(priority)?;
+        Ok(self)
     }
 
     /// The interface's name.

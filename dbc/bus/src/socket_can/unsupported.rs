@@ -30,6 +30,14 @@ impl SocketCan {
     }
 
     /// As on Linux.
+    ///
+    /// # Errors
+    /// As on Linux.
+    pub fn with_priority(self, _: u32) -> std::io::Result<Self> {
+        match self.0 {}
+    }
+
+    /// As on Linux.
     #[must_use]
     pub fn interface(&self) -> &str {
         match self.0 {}

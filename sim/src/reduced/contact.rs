@@ -3,7 +3,8 @@
 //! Implicit: the impulse is a function of the velocity at the step's end. A tyre's force is
 //! max(0, k d - c s d') with the depth d where the step ends: none in the air. The share s of the damper rises from
 //! none where the ground is touched to all of it at [`DAMPED_AT_M`], which makes the force continuous
-//! when a wheel comes down, and it falls with the velocity at any depth, so that there is one solution. Friction is isotropic, at most mu times the normal force. What it is below that is the
+//! when a wheel comes down, and it falls with the velocity at any depth, so that there is one solution.
+//! Friction is isotropic, at most mu times the normal force. What it is below that is the
 //! contact's [`Grip`]: springs of a tyre's patch, or a creep in proportion to the force, as every
 //! solver of rigid friction must let it or not know its force.
 

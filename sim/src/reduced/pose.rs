@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::spatial::{
-    Spatial, Spatial6, add, add_rigid, add_scaled, apply, dot, turn_about, write_rigid,
+    Spatial, Spatial6, add, add_rigid, add_scaled, angular, apply, dot, turn_about, write_rigid,
 };
 use super::tree::{Arm, Tree};
 
@@ -34,34 +34,6 @@ pub(super) struct State {
     pub(super) bristle_m: [[f64; 2]; 6],
     /// Velocities; the front frame's twist is about its origin.
     pub(super) rate: Generalized,
-}
-
-impl State {
-    /// How fast each wheel turns about its axle against the world, rad/s.
-    ///
-    /// An axle is square to the axes of both joints ahead of it, so their rates have no part in it.
-    pub(super) fn rolling_rad_s(&self, tree: &Tree) -> [f64; 6] {
-        let turning = DVec3::new(self.rate[0], self.rate[1], self.rate[2]);
-        let front = self.turn.inverse() * turning;
-        let mut swing_rad_s = [front.y; 3];
-        let behind = if tree.roll.is_some() {
-            let (sin, cos) = self.roll_rad.sin_cos();
-            let [x, y, z] = (front + DVec3::X * self.rate[ROLL]).to_array();
-            [x, cos * y + sin * z]
-        } else {
-            [front.x, front.y]
-        };
-        let mut bend_rad = 0.0;
-        for (swing_rad_s, joint_rad) in swing_rad_s[1..].iter_mut().zip(self.joint_rad) {
-            bend_rad += joint_rad;
-            let (sin, cos) = f64::sin_cos(bend_rad);
-            *swing_rad_s = sin * behind[0] + cos * behind[1];
-        }
-        core::array::from_fn(|i| {
-            let arm_rad_s = tree.arms[i].extends * self.rate[ARMS + i];
-            self.rate[WHEELS + i] + arm_rad_s + swing_rad_s[Tree::frame_of(i)]
-        })
-    }
 }
 
 /// The parts where a [`State`] puts them, from the front frame's origin.
@@ -157,6 +129,15 @@ impl Pose {
         let mut twist = *frame;
         add_scaled(&mut twist, &self.arm[i].arm_axis, rate[ARMS + i]);
         twist
+    }
+
+    /// How fast each wheel turns about its axle against the world, rad/s.
+    pub(super) fn rolling_rad_s(&self, rate: &Generalized) -> [f64; 6] {
+        let frames = self.frame_twists(rate);
+        core::array::from_fn(|i| {
+            let arm = self.arm_twist(i, &frames[Tree::frame_of(i)], rate);
+            rate[WHEELS + i] + angular(&arm).dot(self.arm[i].axle)
+        })
     }
 
     /// Twist of wheel `i` on an arm that has `arm`.

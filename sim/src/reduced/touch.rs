@@ -142,7 +142,7 @@ impl Search {
 
 /// The patches of all wheels at the start of a step.
 pub(super) fn patches(tree: &Tree, (pose, state): (&Pose, &State), dt_s: f64) -> [Patch; 6] {
-    let rolling_rad_s = state.rolling_rad_s(tree);
+    let rolling_rad_s = pose.rolling_rad_s(&state.rate);
     core::array::from_fn(|i| {
         let wheel = Rolling {
             bristle_m: state.bristle_m[i],

@@ -113,43 +113,21 @@ const KEYS: [[f64; 2]; 22] = [
 
 /// A terrain of all layers with these numbers for [`KEYS`].
 fn all_layers(numbers: [f64; KEYS.len()], count: u32, seed: u64) -> String {
-    let mut numbers = numbers.into_iter();
-    let mut n = || numbers.next().unwrap();
     let text = format!(
-        "[slope]\ngrade = {:?}\nuphill_deg = {:?}\n\
-         [ramp]\nx_m = [1, 2, {:?}, {:?}]\nheight_m = {:?}\ny_min_m = {:?}\ny_max_m = 3\n\
-         [step]\nx_m = {:?}\nheight_m = {:?}\nend_x_m = {:?}\n\
-         [perlin]\namplitude_m = {:?}\nwavelength_m = {:?}\npersistence = {:?}\nseed = {}\n\
-         [bumps]\nheight_m = {:?}\nwavelength_m = {:?}\n\
-         [course]\nx_m = {:?}\ncount = {count}\nspacing_m = {:?}\nheight_m = {:?}\n\
-         [boulders]\ncount = {count}\nradius_m = [{:?}, 1]\nheight_m = [0, {:?}]\n\
+        "[slope]\ngrade = #\nuphill_deg = #\n\
+         [ramp]\nx_m = [1, 2, #, #]\nheight_m = #\ny_min_m = #\ny_max_m = 3\n\
+         [step]\nx_m = #\nheight_m = #\nend_x_m = #\n\
+         [perlin]\namplitude_m = #\nwavelength_m = #\npersistence = #\nseed = {}\n\
+         [bumps]\nheight_m = #\nwavelength_m = #\n\
+         [course]\nx_m = #\ncount = {count}\nspacing_m = #\nheight_m = #\n\
+         [boulders]\ncount = {count}\nradius_m = [#, 1]\nheight_m = [0, #]\n\
          clear = {{ x_m = [-1, -0.5], y_m = [-1, -0.5] }}\n\
-         [map]\nnoise_m = {:?}\nshift_m = [0, {:?}, 0]\n\
-         [grid]\nx_m = [-1, 2]\ny_m = [-1, {:?}]\n",
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
+         [map]\nnoise_m = #\nshift_m = [0, #, 0]\n\
+         [grid]\nx_m = [-1, 2]\ny_m = [-1, #]\n",
         seed >> 1,
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
-        n(),
     );
+    let fill = |text: String, number: f64| text.replacen('#', &format!("{number:?}"), 1);
+    let text = numbers.into_iter().fold(text, fill);
     // TOML has its own word for what is no number.
     text.replace("NaN", "nan")
 }

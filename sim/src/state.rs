@@ -27,7 +27,7 @@ pub struct VehicleState {
     /// last step, N; above zero the machine has grounded. Of an arm its pivot counts, which its frame carries; the
     /// rest lies between pivot and axle, and the load above its frame, and neither touches anything.
     /// On the reference frames are rigid and a blow lasts a step, so that its peak grows with the step rate (onto a
-    /// stump 238 kN at 60 Hz, 2791 kN at 1000 Hz; `docs/second-engine.md`); the force of standing there does not, and
+    /// stump 218 kN at 60 Hz, 2540 kN at 1000 Hz; `docs/second-engine.md`); the force of standing there does not, and
     /// the peak of the fast core, whose frames give way, hardly.
     pub chassis_force_n: f64,
     /// Angles of the front and the rear articulation joint, rad; left > 0.

@@ -17,7 +17,7 @@ use programs::Programs;
 /// Compare our engines with MuJoCo and measure all of them; nothing here passes or fails
 ///
 /// Needs python3 (3.11 or later) with venv; MuJoCo itself comes from PyPI into the build folder
-/// unless python3 has it. The tables of docs/second-engine.md are this command's output.
+/// unless python3 has it. The tables of docs/second-engine.md and docs/speed.md are this command's output.
 #[derive(Args)]
 pub(crate) struct SecondEngine {
     /// Do this part alone

@@ -1,8 +1,9 @@
-//! `xt28 config show`: the machine's numbers in force.
+//! `xt28 config`: the machine's numbers in force, and where a log's channels are found.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use xt28_gap::Mapping;
 use xt28_machine::Machine;
 
 use crate::say::say;
@@ -23,25 +24,32 @@ enum Action {
         #[arg(long, value_name = "FILE")]
         machine: Option<PathBuf>,
     },
+    /// Print the built-in mapping of a log's signals to channels, as a start for a `--mapping` of your own
+    Mapping,
 }
 
 impl Config {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let Action::Show { machine } = &self.action;
-        let Some(path) = machine else {
-            say!("{}", Machine::builtin_text());
-            return Ok(Verdict::Positive);
-        };
-        Machine::load(path)?;
-        let text = std::fs::read_to_string(path)?;
-        say!("{text}");
-        // The one section a file may leave out; what then holds is part of what is in force.
-        let optional = Machine::builtin_text().split_once("[vehicle]");
-        if let Some((_, section)) = optional.filter(|_| !has_section(&text, "[vehicle]")) {
-            say!("\n# Not in {}: the built-in values hold.\n[vehicle]{section}", path.display());
+        match &self.action {
+            Action::Show { machine: Some(path) } => show(path)?,
+            Action::Show { machine: None } => say!("{}", Machine::builtin_text()),
+            Action::Mapping => say!("{}", Mapping::builtin_text()),
         }
         Ok(Verdict::Positive)
     }
+}
+
+/// Prints the machine file at `path`, once it has been accepted.
+fn show(path: &Path) -> Result<(), Failure> {
+    Machine::load(path)?;
+    let text = std::fs::read_to_string(path)?;
+    say!("{text}");
+    // The one section a file may leave out; what then holds is part of what is in force.
+    let optional = Machine::builtin_text().split_once("[vehicle]");
+    if let Some((_, section)) = optional.filter(|_| !has_section(&text, "[vehicle]")) {
+        say!("\n# Not in {}: the built-in values hold.\n[vehicle]{section}", path.display());
+    }
+    Ok(())
 }
 
 fn has_section(text: &str, header: &str) -> bool {

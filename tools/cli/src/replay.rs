@@ -13,9 +13,12 @@ use crate::say::say;
 use crate::{Failure, Verdict};
 
 /// Feed the commands of a field log to our machine and compare what both did
+///
+/// Exit status: 0 all judged signals are within their bounds; 1 one is not, or none could be judged; 2 it could
+/// not be done.
 #[derive(Args)]
 pub(crate) struct Replay {
-    /// candump log, plain or gzipped
+    /// candump log, plain or gzipped, or MCAP with `can_msgs` frames
     log: PathBuf,
     /// DBC that the log was sent with
     #[arg(long, value_name = "FILE")]

@@ -15,6 +15,8 @@ use crate::say::say;
 use crate::{Failure, Verdict, processes};
 
 /// Run a scenario and say whether it holds
+///
+/// Exit status: 0 all that the scenario expects holds; 1 something does not; 2 it could not be run.
 #[derive(Args)]
 pub(crate) struct Run {
     /// A built-in name (see `xt28 scenarios`) or a TOML file
@@ -22,6 +24,9 @@ pub(crate) struct Run {
     /// Seed of all noise, instead of the scenario's own
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
+    /// Machine file (TOML), instead of the scenario's own
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
     /// Effects that the machine gets beside the scenario's own (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -53,6 +58,7 @@ impl Run {
         Self {
             scenario: "straight-25m".to_owned(),
             seed: None,
+            machine: None,
             effects: None,
             solver: Solver::default(),
             bus: VIRTUAL.to_owned(),
@@ -64,7 +70,11 @@ impl Run {
     }
 
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let mut setup = Setup::new(Scenario::find(&self.scenario)?, self.seed)?;
+        let mut scenario = Scenario::find(&self.scenario)?;
+        if let Some(machine) = &self.machine {
+            scenario.machine = Some(machine.clone());
+        }
+        let mut setup = Setup::new(scenario, self.seed)?;
         setup.solver = self.solver;
         if let Some(path) = &self.effects {
             setup.add_effects(path)?;

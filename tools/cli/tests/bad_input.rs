@@ -98,6 +98,7 @@ fn a_bad_machine_file_is_named_with_its_line() {
     assert!(talk.contains("m.toml:2: unknown field `arm_lb`"), "{talk}");
     let path = file(&folder, "s.toml", &format!("machine = \"m.toml\"\n{SCENARIO}"));
     assert!(refusal(&["run", &path]).contains("m.toml:2:"));
+    assert!(refusal(&["run", "straight-25m", "--machine", &machine]).contains("m.toml:2:"));
 }
 
 #[test]

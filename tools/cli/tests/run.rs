@@ -79,4 +79,27 @@ fn the_lists_print() {
     assert!(String::from_utf8(text).unwrap().contains("[terrain.ramp]"));
     let text = xt28(&["config", "show"]).stdout;
     assert!(String::from_utf8(text).unwrap().contains("radius_m"));
+    let text = xt28(&["config", "mapping"]).stdout;
+    assert!(String::from_utf8(text).unwrap().contains("\"stroke.FR\" = \"PosFront.FR\""));
+}
+
+#[test]
+fn a_machine_file_on_the_command_line_takes_the_place_of_the_scenarios_own() {
+    let (folder, path) = short(STANDS);
+    let log_of = |machine: Option<&str>| {
+        let log = folder.path().join("run.log");
+        let mut arguments = vec!["run", &path, "--record", log.to_str().unwrap()];
+        arguments.extend(machine.into_iter().flat_map(|file| ["--machine", file]));
+        let output = xt28(&arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(log).unwrap()
+    };
+    let builtin = String::from_utf8(xt28(&["config", "show"]).stdout).unwrap();
+    let same = folder.path().join("same.toml");
+    fs::write(&same, &builtin).unwrap();
+    let lighter = folder.path().join("lighter.toml");
+    let line = builtin.lines().find(|line| line.starts_with("arm_kg")).expect("the arms' mass");
+    fs::write(&lighter, builtin.replace(line, "arm_kg = 100.0")).unwrap();
+    assert_eq!(log_of(same.to_str()), log_of(None));
+    assert_ne!(log_of(lighter.to_str()), log_of(None));
 }

@@ -72,6 +72,12 @@ impl Default for Mapping {
 }
 
 impl Mapping {
+    /// The file that [`Mapping::default`] reads, as a start for one of somebody else's names.
+    #[must_use]
+    pub const fn builtin_text() -> &'static str {
+        BUILTIN
+    }
+
     /// The built-in names, with those in the file at `path` over them.
     ///
     /// # Errors

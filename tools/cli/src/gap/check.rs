@@ -20,6 +20,8 @@ use crate::{Failure, Verdict};
 /// --set, cases are drawn from plants that share no effect code with the diagnosis: a fifth sound, half
 /// with one effect, 15 % with two, 15 % with one that is in no catalogue. Beside the diagnosis stand
 /// three plain rules on the same logs.
+///
+/// Exit status: 0 every case was examined, whatever the scores; 1 one could not be; 2 nothing could.
 #[derive(Args)]
 pub(crate) struct Check {
     /// Folder of other machines' cases: NAME/about.toml with logs and DBC each, and the answers as

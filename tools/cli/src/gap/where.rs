@@ -19,14 +19,16 @@ use crate::{Failure, Verdict};
 /// Drive each block of the simulator with what was measured, and say which one parts from the log
 ///
 /// A block's gap is the root mean square of all its signals' errors on all logs, in units of what separates
-/// two models of one nominal machine (the JSON has its square as well, as gap_over_floor). Masses, stiffnesses
-/// and the like are where they fit best, and no effect is believed but those of --effects. Gaps of `diagnose`
-/// are others: of each signal alone, on the logs that are fitted, with every effect a little there too, and each
-/// tolerance held to 2.5 of its own (1 where the verdict is unknown).
+/// two models of one nominal machine. Masses, stiffnesses and the like are where they fit best, and no effect is
+/// believed but those of --effects. Gaps of `diagnose` are others: of each signal alone, on the logs that are
+/// fitted, with every effect a little there too, and each tolerance held to 2.5 of its own (1 where the verdict
+/// is unknown).
 ///
 /// A sound machine, whose every part is a little off, shows up to about 2.5; beyond 3.2 there is something to
 /// explain. Blocks of which nothing can be judged have none: how the machine stands, travels and is driven is
 /// judged on level ground, or on a slope that is known, alone.
+///
+/// Exit status: 0 no block has something to explain; 1 one has; 2 it could not be done.
 #[derive(Args)]
 pub(crate) struct Where {
     /// Logs of one machine: candump, plain or gzipped, or MCAP with `can_msgs` frames
@@ -114,7 +116,6 @@ fn json(gaps: &[(Generator, Option<f64>)]) -> String {
             "block": generator.block().to_string(),
             "residual": generator.to_string(),
             "gap_over_noise": gap,
-            "gap_over_floor": gap.map(|gap| gap * gap),
         })
     });
     format!("{:#}\n", json!({ "where": rows.collect::<Vec<_>>() }))
@@ -148,7 +149,7 @@ mod tests {
         assert!(lines[2].ends_with("0.30"), "{table}");
         assert!(lines[3].ends_with("-  nothing to judge"), "{table}");
         let json: serde_json::Value = serde_json::from_str(&json(&gaps)).unwrap();
-        assert_eq!(json["where"][0]["gap_over_floor"], 20.25);
+        assert_eq!(json["where"][0]["gap_over_noise"], 4.5);
         assert!(json["where"][2]["gap_over_noise"].is_null());
     }
 }

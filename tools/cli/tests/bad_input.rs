@@ -102,6 +102,29 @@ fn a_bad_machine_file_is_named_with_its_line() {
 }
 
 #[test]
+fn a_number_that_an_effect_does_not_take_is_named() {
+    for (arguments, says) in [
+        (&["delay_s=9"][..], "arm-delay:6: delay_s = 9 is outside 0 to 1"),
+        (&["late=1"], "arm-delay has no `late`, but delay_s"),
+    ] {
+        let talk = refusal(&[&["effects", "arm-delay"], arguments].concat());
+        assert!(talk.contains(says), "{talk}");
+    }
+    for (arguments, says) in [
+        (&["delay_s"][..], "expected KEY=VALUE"),
+        (&["delay_s=soon"], "`soon` is no number"),
+        (&["delay_s=0.2", "--scope", "left-front"], "left-front"),
+    ] {
+        let output = xt28(&[&["effects", "arm-delay"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2));
+        let talk = String::from_utf8(output.stderr).unwrap();
+        assert!(talk.contains(says), "{talk}");
+    }
+    let talk = refusal(&["effects", "steer-delay", "delay_s=0.2", "--scope", "FR"]);
+    assert!(talk.contains("steer-delay is of the whole machine"), "{talk}");
+}
+
+#[test]
 fn a_bus_that_does_not_exist_is_refused_before_anything_starts() {
     let talk = refusal(&["run", "straight-25m", "--bus", "nocan7"]);
     assert!(talk.contains("nocan7"), "{talk}");

@@ -84,6 +84,24 @@ fn the_lists_print() {
 }
 
 #[test]
+fn an_overlay_has_the_numbers_and_the_wheels_that_it_was_asked_for() {
+    let text = |arguments: &[&str]| {
+        let output = xt28(arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let asked = text(&["effects", "slippery-ground", "friction_factor=0.3", "--scope", "rear"]);
+    for line in ["scope = \"rear\" ", "friction_factor = 0.3 ", "slip = 0.0 "] {
+        assert!(asked.contains(line), "{line}: {asked}");
+    }
+    assert!(text(&["effects", "slippery-ground"]).contains("slip = 0.03 "));
+    let (folder, path) = short(STANDS);
+    let overlay = folder.path().join("slippery.toml");
+    fs::write(&overlay, asked).unwrap();
+    text(&["run", &path, "--effects", overlay.to_str().unwrap()]);
+}
+
+#[test]
 fn a_machine_file_on_the_command_line_takes_the_place_of_the_scenarios_own() {
     let (folder, path) = short(STANDS);
     let log_of = |machine: Option<&str>| {

@@ -59,7 +59,7 @@ pub struct Effect {
 }
 
 /// One number of an effect.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     /// Name in overlays and verdicts, with its unit.
     pub name: &'static str,
@@ -108,6 +108,22 @@ impl Effect {
         self.parameters.iter().any(|p| matches!(p.slot, Slot::PerWheel(_)))
     }
 
+    /// The same effect as it is on `machine`: each parameter neutral where the machine file says the same number,
+    /// and its range with that in it. Where that changes nothing it is the effect itself; else it lives as long as
+    /// the program, as effects do.
+    #[must_use]
+    pub fn on(&'static self, machine: &Machine) -> &'static Self {
+        let own = |p: &Parameter| {
+            let (neutral, [low, high]) = (p.neutral_on(machine), p.range);
+            Parameter { neutral, range: [low.min(neutral), high.max(neutral)], ..*p }
+        };
+        let parameters: Vec<Parameter> = self.parameters.iter().map(own).collect();
+        if parameters.iter().zip(self.parameters).all(|(own, p)| own.neutral == p.neutral) {
+            return self;
+        }
+        Box::leak(Box::new(Self { parameters: parameters.leak(), ..*self }))
+    }
+
     /// The parameter of this name.
     #[must_use]
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
@@ -142,5 +158,27 @@ impl Parameter {
             }
             Slot::Whole(slot) => *slot(&mut copy),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::{CATALOGUE, find};
+
+    #[test]
+    fn an_effect_is_neutral_where_the_machine_file_says() {
+        let mut machine = Machine::xt28();
+        for effect in CATALOGUE {
+            assert!(core::ptr::eq(effect.on(&machine), effect), "{}", effect.name);
+        }
+        machine.vehicle.tyre_stiffness_n_m = 1.0e5; // softer than the law's range reaches
+        let soft = find("soft-tyres").unwrap();
+        let own = soft.on(&machine);
+        assert_eq!(own, soft, "a name stands for one effect");
+        let [stiffness, damping] = own.parameters else { panic!("two numbers") };
+        assert_eq!((stiffness.neutral, stiffness.range), (1.0e5, [1.0e5, 2.0e7]));
+        assert_eq!(damping.neutral, soft.parameters[1].neutral);
+        assert_eq!(find("arm-delay").unwrap().on(&machine).parameters[0].neutral, 0.0);
     }
 }

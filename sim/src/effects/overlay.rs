@@ -139,7 +139,7 @@ impl Overlay {
     /// # Errors
     /// [`OverlayError::Overloaded`]: the machine file has the largest load (paper, table of the machine).
     pub fn effects(&self, machine: &Machine) -> Result<Effects, OverlayError> {
-        let mut effects = Effects::default();
+        let mut effects = Effects::none_on(machine);
         self.entries.iter().for_each(|entry| entry.apply(machine, &mut effects));
         let (mass_kg, load_max_kg) = (effects.masses.payload.mass_kg, machine.masses.load_max_kg);
         if mass_kg > load_max_kg {

@@ -71,6 +71,20 @@ fn a_case_that_cannot_be_read_is_told_and_the_others_are_scored() {
 }
 
 #[test]
+fn a_set_of_which_nothing_can_be_read_is_told_case_by_case() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = set(folder.path());
+    for case in CASES {
+        fs::write(Path::new(&set).join(case).join("short.log"), "(1.0) can0 1\n").unwrap();
+    }
+    let output = xt28(&["gap", "check", "--set", &set, "--no-how-far"]);
+    let [table, talk] = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap());
+    assert_eq!(output.status.code(), Some(1), "{talk}");
+    assert!(table.contains("3 more could not be read"), "{table}");
+    assert!(table.contains("short.log:1"), "{table}");
+}
+
+#[test]
 fn json_in_a_file_leaves_the_table_on_stdout() {
     let folder = tempfile::tempdir().unwrap();
     let file = path(folder.path(), "scores.json");

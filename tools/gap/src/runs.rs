@@ -14,10 +14,9 @@ use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
 use crate::diagnosis::{
-    FieldRun, Inquiry, Signals, attitude_scale, joint_scale, load_scale, odd_heading, speed_scale,
-    stroke_scale, swapped_chambers, swapped_wheels, wheel_scale,
+    FieldRun, Inquiry, Signals, ensure_motions_agreeing, ensure_pressures_agreeing, swapped_wheels,
 };
-use crate::{About, Decoder, Disagreement, FieldLog, GapError};
+use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
@@ -183,58 +182,23 @@ impl RunSet {
         choice: &Choice,
         any_order: bool,
     ) -> Result<Inquiry, GapError> {
-        let mut inquiry = Inquiry::new(machine, self.into_field_runs(choice, any_order)?);
+        let runs = self.into_field_runs(&machine, choice, any_order)?;
+        let mut inquiry = Inquiry::new(machine, runs);
         if !choice.is_advised {
             inquiry.hold_out_what_others_show();
         }
         Ok(inquiry)
     }
 
-    /// Whether what `runs` tell twice, by two sensors of one thing, has one scale and one sense.
-    ///
-    /// # Errors
-    /// [`Disagreement`].
-    pub fn ensure_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
-        Self::ensure_pressures_agreeing(runs)?;
-        Self::ensure_motions_agreeing(runs)
-    }
-
-    /// The same of what the chambers' pressures say, which take no heed of which wheel's stroke is whose.
-    fn ensure_pressures_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
-        if let Some(swapped) = swapped_chambers(runs) {
-            return Err(Disagreement::ChamberOrder { swapped });
-        }
-        load_scale(runs).map_or(Ok(()), |scale| Err(Disagreement::LoadScale { scale }))
-    }
-
-    /// The same of wheels, joints, strokes and attitude.
-    fn ensure_motions_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
-        if let Some(scale) = wheel_scale(runs) {
-            return Err(Disagreement::WheelScale { scale });
-        }
-        if let Some(scale) = speed_scale(runs) {
-            return Err(Disagreement::SpeedScale { scale });
-        }
-        if let Some(odd) = odd_heading(runs) {
-            return Err(Disagreement::HeadingSense { odd });
-        }
-        if let Some(scale) = joint_scale(runs) {
-            return Err(Disagreement::JointScale { scale });
-        }
-        if let Some(scale) = stroke_scale(runs) {
-            return Err(Disagreement::StrokeScale { scale });
-        }
-        attitude_scale(runs).map_or(Ok(()), |scale| Err(Disagreement::AttitudeScale { scale }))
-    }
-
-    /// The runs for an inquiry, without those that `choice` leaves out. With `any_order`, wheels may
-    /// look swapped.
+    /// The runs for an inquiry about a machine of `machine`'s make, without those that `choice` leaves out. With
+    /// `any_order`, wheels may look swapped.
     ///
     /// # Errors
     /// [`GapError::Unmeasured`] names what a log has not, [`GapError::WheelOrder`] the wheels that look
-    /// swapped; and as [`RunSet::ensure_agreeing`].
+    /// swapped; and as [`ensure_agreeing`](crate::diagnosis::ensure_agreeing).
     pub fn into_field_runs(
         self,
+        machine: &Machine,
         choice: &Choice,
         any_order: bool,
     ) -> Result<Vec<FieldRun>, GapError> {
@@ -246,12 +210,12 @@ impl RunSet {
             })
             .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
-        Self::ensure_pressures_agreeing(&signals)?;
+        ensure_pressures_agreeing(&signals, machine)?;
         // Before attitude is held against strokes: wheels in another order make a machine that leans the other
         // way, and are no fault of the unit that says so.
-        match swapped_wheels(&signals) {
+        match swapped_wheels(&signals, machine) {
             Some(swap) if !any_order => return Err(GapError::WheelOrder { swap }),
-            _ => Self::ensure_motions_agreeing(&signals)?,
+            _ => ensure_motions_agreeing(&signals, machine)?,
         }
         Ok(runs)
     }

@@ -3,9 +3,8 @@
 
 mod own_logs;
 
-use xt28_gap::RunSet;
-use xt28_gap::diagnosis::Signals;
-use xt28_machine::Wheel;
+use xt28_gap::diagnosis::{Generator, Signals, ensure_agreeing};
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
 fn both() -> [Signals; 2] {
@@ -14,7 +13,7 @@ fn both() -> [Signals; 2] {
 
 fn scaled(mut runs: [Signals; 2], by: impl Fn(&mut Signals)) -> Result<(), String> {
     runs.iter_mut().for_each(by);
-    RunSet::ensure_agreeing(&runs).map_err(|error| error.to_string())
+    ensure_agreeing(&runs, &Machine::xt28()).map_err(|error| error.to_string())
 }
 
 fn times(samples: &mut [f64], factor: f64) {
@@ -47,6 +46,16 @@ fn an_attitude_of_the_wrong_sign_is_told_to_be_so() {
     let pitch = scaled(runs.clone(), |s| times(&mut s.pitch_rad, -1.0)).unwrap_err();
     assert!(pitch.contains("pitch -") && !pitch.contains("roll "), "{pitch}");
     assert!(pitch.ends_with("or front and rear are exchanged"), "{pitch}");
+    // Nor does it help that something was made of the readings before.
+    let machine = Machine::xt28();
+    let mut driven = runs;
+    for s in &mut driven {
+        times(&mut s.roll_rad, -1.0);
+        for generator in Generator::all() {
+            generator.residuals(s, &machine, &Effects::default());
+        }
+    }
+    assert!(ensure_agreeing(&driven, &machine).is_err());
 }
 
 #[test]

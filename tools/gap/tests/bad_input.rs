@@ -122,8 +122,8 @@ fn joints_count_only_while_the_wheels_turn() {
 
 #[test]
 fn wheels_in_their_order_are_not_complained_of() {
-    assert_eq!(swapped_wheels(&signals(&swinging())), None);
-    assert_eq!(swapped_wheels(&signals(&standing())), None);
+    assert_eq!(swapped_wheels(&signals(&swinging()), &Machine::xt28()), None);
+    assert_eq!(swapped_wheels(&signals(&standing()), &Machine::xt28()), None);
 }
 
 #[test]
@@ -134,7 +134,8 @@ fn every_two_wheels_swapped_are_found() {
             let (of_a, of_b) = (all[&Channel::Stroke(a)].clone(), all[&Channel::Stroke(b)].clone());
             all.insert(Channel::Stroke(a), of_b);
             all.insert(Channel::Stroke(b), of_a);
-            let swap = swapped_wheels(&signals(&all)).unwrap_or_else(|| panic!("{a} {b}"));
+            let swap = swapped_wheels(&signals(&all), &Machine::xt28())
+                .unwrap_or_else(|| panic!("{a} {b}"));
             assert_eq!(swap.between, ["target", "stroke"]);
             let mut pairs = swap.pairs;
             pairs.sort();
@@ -157,8 +158,8 @@ fn wheels_swapped_are_found_in_the_one_run_that_tells_them_apart() {
     let mut apart = swinging();
     swap(&mut apart, [Wheel::Fr, Wheel::Fl].map(Channel::Stroke));
     let ([alike], [apart]) = (signals(&alike), signals(&apart));
-    assert_eq!(swapped_wheels(std::slice::from_ref(&alike)), None);
-    let found = swapped_wheels(&[alike, apart]).expect("they are swapped");
+    assert_eq!(swapped_wheels(std::slice::from_ref(&alike), &Machine::xt28()), None);
+    let found = swapped_wheels(&[alike, apart], &Machine::xt28()).expect("they are swapped");
     assert_eq!(found.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
 }
 
@@ -168,7 +169,7 @@ fn a_fault_of_an_arm_is_no_swap() {
     for fault in [|_: f64| 0.0, |t: f64| 0.002 * t, |t: f64| -0.03 * (TAU * 0.05 * t).sin()] {
         let mut all = swinging();
         all.insert(Channel::Stroke(Wheel::Fr), series(|t| 0.17 + fault(t)));
-        assert_eq!(swapped_wheels(&signals(&all)), None);
+        assert_eq!(swapped_wheels(&signals(&all), &Machine::xt28()), None);
     }
 }
 
@@ -196,9 +197,9 @@ fn swap(all: &mut BTreeMap<Channel, Series>, [a, b]: [Channel; 2]) {
 fn pressures_of_another_wheel_are_found() {
     const PHASES: [f64; 6] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
     let mut all = pressed(|w, t| 3.0e4 + 8.0e3 * (0.3 * t + PHASES[w.index()]).sin());
-    assert_eq!(swapped_wheels(&signals(&all)), None);
+    assert_eq!(swapped_wheels(&signals(&all), &Machine::xt28()), None);
     swap(&mut all, [Wheel::Fr, Wheel::Fl].map(Channel::BorePressure));
-    let found = swapped_wheels(&signals(&all)).expect("they are swapped");
+    let found = swapped_wheels(&signals(&all), &Machine::xt28()).expect("they are swapped");
     assert_eq!(found.between, ["pressures", "load"]);
     assert_eq!(found.pairs, [(Wheel::Fr, Wheel::Fl), (Wheel::Fl, Wheel::Fr)]);
 }
@@ -209,5 +210,5 @@ fn pressures_of_arms_that_carry_alike_are_in_order() {
     let all = pressed(|w, t| {
         3.0e4 + 8.0e3 * (0.3 * t + f64::from(u8::from(w.name().starts_with('F')))).sin()
     });
-    assert_eq!(swapped_wheels(&signals(&all)), None);
+    assert_eq!(swapped_wheels(&signals(&all), &Machine::xt28()), None);
 }

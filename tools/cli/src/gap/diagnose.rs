@@ -102,15 +102,23 @@ impl Diagnose {
             bar.set_position((progress.done.clamp(0.0, 1.0) * 1e3) as u64);
         };
         let mut diagnosis = inquiry.diagnose(&show);
+        let mut unwritten = None;
         if !self.no_how_far || self.next.is_some() {
             bar.set_message("looking for the next test drive");
-            self.look_ahead(&inquiry, &mut diagnosis)?;
+            // What was found must not be lost for a drive that cannot be scripted or written.
+            if let Err(why) = self.look_ahead(&inquiry, &mut diagnosis) {
+                diagnosis.notes.push(format!("The drive to make next could not be told: {why}."));
+                unwritten = self.next.is_some().then_some(why);
+            }
         }
         bar.finish_and_clear();
         diagnosis.notes.splice(0..0, notes);
         diagnosis.seconds = start.elapsed().as_secs_f64();
         say!("{}", page::text(&diagnosis));
         self.write(&inquiry, &diagnosis)?;
+        if let Some(why) = unwritten {
+            return Err(why);
+        }
         Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
     }
 

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 use xt28_gap::diagnosis::{
-    Evidence, Floors, Generator, Knob, Signals, share_resistance, swapped_wheels, with_noise_of,
+    Evidence, Floors, Generator, Knob, Signals, ensure_agreeing, share_resistance, swapped_wheels,
+    with_noise_of,
 };
-use xt28_gap::{Decoder, GapError, Known, KnownRun, Mapping, RunSet};
+use xt28_gap::{Decoder, Known, KnownRun, Mapping, RunSet};
 use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
@@ -81,16 +82,19 @@ impl Where {
         for note in remarks(&set, &given)? {
             eprintln!("{note}");
         }
-        let signals = |run: &KnownRun| {
-            let signals = Signals::new(&run.log, run.terrain.clone())?;
-            Ok::<_, GapError>(with_noise_of(signals, run.log.all_series(), &machine))
-        };
-        let mut runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
+        let signals = |run: &KnownRun| Signals::new(&run.log, run.terrain.clone());
+        let runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
         // First, as wheels in another order make an attitude that does not agree.
-        if let Some(swap) = swapped_wheels(&runs) {
+        if let Some(swap) = swapped_wheels(&runs, &machine) {
             eprintln!("wheels look swapped: {swap}; nothing is put in order by itself");
         }
-        RunSet::ensure_agreeing(&runs)?;
+        ensure_agreeing(&runs, &machine)?;
+        let readings = set.runs().iter().map(|run| run.log.all_series());
+        let mut runs: Vec<Signals> = runs
+            .into_iter()
+            .zip(readings)
+            .map(|(signals, readings)| with_noise_of(signals, readings, &machine))
+            .collect();
         share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
             eprintln!("{remark}");

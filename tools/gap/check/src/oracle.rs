@@ -1,6 +1,6 @@
 //! How far the gap shrinks for who knows the cause: what a diagnosis can reach at best.
 
-use xt28_gap::diagnosis::{Cause, Estimate, HowFar, Shrink};
+use xt28_gap::diagnosis::{Beginning, Cause, Estimate, HowFar, Shrink};
 
 use crate::CheckError;
 use crate::source::Source;
@@ -37,7 +37,8 @@ fn cause(fact: &Fact) -> Option<Cause> {
         probability: 1.0,
         parameters: effect.parameters.iter().map(estimate).collect(),
         class: vec![effect.name],
-        begins: None,
+        begins: (fact.start_s > 0.0)
+            .then(|| Beginning { run: "every run".to_owned(), at_s: fact.start_s }),
         shrink: None,
     })
 }

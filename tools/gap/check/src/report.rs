@@ -103,7 +103,9 @@ impl Report {
             write!(to, " {:<23}", column.name)?;
         }
         writeln!(to)?;
-        for (row, (name, _)) in self.columns[0].scores.iter().enumerate() {
+        // Without a case that could be read there is none.
+        let scored = self.columns.first().map_or(&[][..], |own| &own.scores);
+        for (row, (name, _)) in scored.iter().enumerate() {
             write!(to, "{name:<32}")?;
             for column in &self.columns {
                 write!(to, " {:<23}", cell(&column.scores[row].1))?;

@@ -82,9 +82,14 @@ impl Inquiry {
             return Findings { unbent, alone, apart, after, held, shifts, ..Findings::default() };
         };
         tell("trying second causes", 0.4);
-        let (pair, beside) = self.second(&docket, &single, &shown);
+        let Pairs { pair, firsts, beside } = self.second(&docket, &single, &shown);
         tell("looking at what is left", 0.7);
         let (pair, paid) = owned(pair, &first, &beside);
+        // They were sought beside one second, and say nothing beside another.
+        let is_beside = |second: &Effect| {
+            pair.first().is_some_and(|[_, best]| best.fit.hypothesis.effect == second)
+        };
+        let firsts = firsts.filter(|(second, _)| is_beside(second)).map_or(Vec::new(), |(_, f)| f);
         let nothing = &self.believed;
         let (believed, court, last) = match pair.first() {
             Some([one, second]) => (vec![&one.fit, &second.fit], &beside, &second.fit),
@@ -94,10 +99,22 @@ impl Inquiry {
         let (echoes, unevens) = court.again(&[last], nothing);
         let held = first.held(court, &[last]);
         let apart = first.apart(&believed, SHIFT_MAX);
-        Findings { unbent, alone, apart, single, pair, after, echoes, unevens, held, shifts }
+        Findings {
+            unbent,
+            alone,
+            apart,
+            single,
+            pair,
+            firsts,
+            after,
+            echoes,
+            unevens,
+            held,
+            shifts,
+        }
     }
 
-    /// Two causes at once, the best first, none where one is enough; and the docket beside the first.
+    /// Two causes at once, the best first, none where one is enough; and what was found on the way.
     ///
     /// With the first believed, a second is sought; with that believed, the first is sought anew among
     /// the likely ones, for it was found while the second still disturbed.
@@ -106,7 +123,7 @@ impl Inquiry {
         docket: &dyn Fn(&Base) -> Docket<'a>,
         single: &[Candidate],
         shown: &Shown,
-    ) -> (Vec<[Candidate; 2]>, Docket<'a>) {
+    ) -> Pairs<'a> {
         let beside = |one: &Candidate| {
             let effects = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
             docket(&Base { effects, since_s: one.fit.from_s })
@@ -124,7 +141,7 @@ impl Inquiry {
         let mut seconds = seconds_of(&court, &first, &others(&first, &self.catalogue));
         let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
         else {
-            return (Vec::new(), court);
+            return Pairs { pair: Vec::new(), firsts: None, beside: court };
         };
         let mut likely: Vec<&'static Effect> = Vec::new();
         for candidate in single.iter().take(LIKELY) {
@@ -143,8 +160,19 @@ impl Inquiry {
             }
         }
         let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
-        (pairs.collect(), court)
+        let firsts = Some((second.fit.hypothesis.effect, again));
+        Pairs { pair: pairs.collect(), firsts, beside: court }
     }
+}
+
+/// What a search for two causes found.
+struct Pairs<'a> {
+    /// The pairs, all with one first.
+    pair: Vec<[Candidate; 2]>,
+    /// What may be the first, and the second beside which it was sought.
+    firsts: Option<(&'static Effect, Vec<Candidate>)>,
+    /// The evidence beside the first.
+    beside: Docket<'a>,
 }
 
 impl Docket<'_> {

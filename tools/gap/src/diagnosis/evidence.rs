@@ -13,6 +13,7 @@ mod bumps;
 mod echo;
 mod halves;
 mod left;
+mod span;
 mod stack;
 mod watch;
 

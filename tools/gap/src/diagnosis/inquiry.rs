@@ -86,10 +86,10 @@ impl Inquiry {
         });
         share_resistance(runs.iter_mut().map(|run| &mut run.signals), &machine);
         Self {
-            machine,
-            believed: Effects::default(),
+            believed: Effects::none_on(&machine),
+            catalogue: CATALOGUE.iter().map(|effect| effect.on(&machine)).collect(),
             runs,
-            catalogue: CATALOGUE.iter().collect(),
+            machine,
             how_far: true,
         }
     }

@@ -41,6 +41,8 @@ pub struct Findings {
     pub single: Vec<Candidate>,
     /// Pairs of causes, best first; empty where one is enough.
     pub pair: Vec<[Candidate; 2]>,
+    /// What may be the first of the best pair, sought anew beside its second, best first.
+    pub firsts: Vec<Candidate>,
     /// What each signal leaves under the best cause or pair.
     pub after: Vec<Left>,
     /// How much of that is what they explain, moved in time.

@@ -21,7 +21,8 @@ const THRESHOLDS: [f64; 4] = [-4.0, -1.5, 1.5, 4.0];
 /// Parts of itself that a limit is looked at, and tolerances of what goes with it there.
 const LOWERED: [f64; 4] = [0.5, 0.35, 0.2, 0.1];
 const WITH_LOWERED: [f64; 3] = [1.5, 4.0, 10.0];
-/// Instants of every run from which an effect is looked for, s; what sets in between is seen at one.
+/// Instants of a test drive from which an effect is looked for, s; what sets in between is seen at one. Longer runs
+/// have them as much further apart.
 const LOOKED_FROM_S: [f64; 4] = [0.0, 6.0, 12.0, 18.0];
 /// What an effect that sets in late must gain beyond one that was always there, nats.
 const LATE_MIN: f64 = 6.0;
@@ -89,18 +90,19 @@ fn weight(start: &Start) -> f64 {
 /// scope that has the arm, and is remembered.
 fn first_look(evidence: &Evidence<'_>, effect: &'static Effect) -> Vec<Start> {
     let mut memory = Memory::new();
+    let instants = LOOKED_FROM_S.map(|at_s| at_s * evidence.stretch());
     let mut starts = Vec::new();
     for hypothesis in Hypothesis::of(&[effect]) {
         for values in grid(effect.parameters) {
             let effects = hypothesis.applied(evidence.base(), &values);
             let only = |generator: Generator| generator.hears(effect, hypothesis.scope);
             let remembered = (&values[..], &mut memory);
-            let costs = evidence.costs_remembered(&effects, &only, &LOOKED_FROM_S, remembered);
+            let costs = evidence.costs_remembered(&effects, &only, &instants, remembered);
             let worth = |(from_s, cost): (f64, f64)| {
                 let late = if from_s > 0.0 { LATE_MIN } else { 0.0 };
                 (from_s, 0.5 * (evidence.base_cost() - cost) - late)
             };
-            let each = LOOKED_FROM_S.into_iter().zip(costs).map(worth);
+            let each = instants.into_iter().zip(costs).map(worth);
             if let Some((from_s, gain)) = each.max_by(|a, b| a.1.total_cmp(&b.1)) {
                 starts.push(Start { hypothesis, values, from_s, gain });
             }

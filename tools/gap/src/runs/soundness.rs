@@ -4,7 +4,7 @@
 use crate::diagnosis::needed;
 use crate::{Channel, Decoder, FaultKind, FieldLog, GapError, Series};
 
-/// The blocks are set anew every five seconds; a shorter log has not one whole piece.
+/// The whole machine is set anew every five seconds; a shorter log has not one whole piece.
 const LEAST_S: f64 = 5.0;
 /// A clock that goes ahead by more leaves two logs in one file, and which is meant is not for us to say.
 const AHEAD_MAX_S: f64 = 1.0;
@@ -83,6 +83,8 @@ const fn possible(channel: Channel) -> Option<[f64; 2]> {
         Channel::WheelSpeed(_) => [-20.0, 20.0],
         Channel::FrontJoint | Channel::RearJoint | Channel::TargetJoint => [-1.0, 1.0],
         Channel::Roll | Channel::Pitch => [-1.6, 1.6],
+        // Anywhere on Earth, from any origin.
+        Channel::East | Channel::North => [-2.0e7, 2.0e7],
         // Fifteen turns, where somebody counts them; one is 360 where degrees are taken for radians.
         Channel::Heading => [-100.0, 100.0],
         Channel::RetractCurrent(_)

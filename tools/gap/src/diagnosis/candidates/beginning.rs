@@ -6,7 +6,7 @@ use super::super::evidence::Evidence;
 use super::super::hypothesis::Fit;
 use super::{Candidate, Docket, OPEN};
 
-/// Instants of every run at which an effect may set in, s.
+/// Instants of a test drive at which an effect may set in, s. Longer runs have them as much further apart.
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
 /// How many of the leading hypotheses are asked when they set in.
 pub(super) const ASKED: usize = 6;
@@ -26,7 +26,7 @@ const BEGINNING_HINT: f64 = 2.0;
 const OPEN_STEPS_S: [f64; 2] = [0.5, 0.1];
 /// Beginnings that explain as much but for this are alike, nats: the one in their middle is told.
 const ALIKE: f64 = 0.1;
-/// The widest and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
+/// The widest, of a test drive, and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
 /// for a tenth of a second beside it, in every run.
 const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.03];
 
@@ -41,7 +41,8 @@ impl Docket<'_> {
             each.max_by(|a, b| a.0.total_cmp(&b.0))
         };
         let whole = hypothesis.gain(&self.fit, from_s, &found.fit.values);
-        let (gain, at_s) = best(&SETS_IN_S, &found.fit.values)?;
+        let stretch = self.fit.stretch();
+        let (gain, at_s) = best(&SETS_IN_S.map(|at_s| at_s * stretch), &found.fit.values)?;
         if !is_late && gain < whole + BEGINNING_HINT {
             return None;
         }
@@ -57,11 +58,12 @@ impl Docket<'_> {
         let held = self.held.as_ref().filter(|_| from_s > 0.0)?;
         let here = hypothesis.gain(&self.fit, from_s, values);
         let least = here * (1.0 - OPEN[1]) - OPEN[0];
+        let last_s = SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch();
         // The middle of those within `reach_s` of `about_s` that suit all runs best.
         let best = |about_s: f64, reach_s: f64, step_s: f64| -> Option<f64> {
             let count = (2.0 * reach_s / step_s).round() as usize;
             let instants = (0..=count).map(|k| about_s - reach_s + k as f64 * step_s);
-            let within = |at_s: &f64| *at_s > 0.0 && *at_s <= SETS_IN_S[SETS_IN_S.len() - 1];
+            let within = |at_s: &f64| *at_s > 0.0 && *at_s <= last_s;
             let instants: Vec<f64> = instants.filter(within).collect();
             let gains = |evidence| hypothesis.onset_gains(evidence, &instants, values);
             let each = instants.iter().zip(gains(&self.fit).into_iter().zip(gains(held)));
@@ -77,7 +79,7 @@ impl Docket<'_> {
             best.get(best.len() / 2).copied()
         };
         let [coarse_s, fine_s] = OPEN_STEPS_S;
-        let about_s = best(from_s, SETS_IN_S[SETS_IN_S.len() - 1], coarse_s)?;
+        let about_s = best(from_s, last_s, coarse_s)?;
         let at_s = best(about_s, 3.0, fine_s)?;
         let moved = self.weighed(hypothesis.refit(&self.fit, at_s, values));
         (moved.score() > found.score()).then_some(moved)
@@ -86,7 +88,7 @@ impl Docket<'_> {
     /// The same with its beginning where it explains most, its values anew after every step there: a leak
     /// that begins later and one that is smaller look alike a second beside it.
     fn begun(&self, mut fit: Fit) -> Fit {
-        let mut step_s = BEGINNING_STEPS_S[0];
+        let mut step_s = BEGINNING_STEPS_S[0] * self.fit.stretch();
         while step_s >= BEGINNING_STEPS_S[1] {
             let hypothesis = fit.hypothesis;
             let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);

@@ -23,20 +23,24 @@ impl HowFar {
         if !stood_by.is_empty() {
             let causes: Vec<Cause> =
                 stood_by.iter().map(|&k| diagnosis.causes[k].clone()).collect();
-            let refit = self.refit(&causes);
             // From the first beginning on, one that begins later would be fitted to a time without it.
-            match at_different_times(&causes) {
-                Some(note) => diagnosis.notes.push(note),
+            let shrink = match at_different_times(&causes) {
+                Some(note) => {
+                    diagnosis.notes.push(note);
+                    self.shrink_by(&causes)
+                }
                 None => {
+                    let refit = self.refit(&causes);
                     for (&k, estimates) in stood_by.iter().zip(refit.estimates) {
                         diagnosis.causes[k].parameters = estimates;
                     }
+                    refit.shrink
                 }
-            }
+            };
             progress("fitting a free model of the residuals", 0.7);
             diagnosis.together = Some(Together {
                 effects: causes.iter().map(|cause| cause.effect.name).collect(),
-                shrink: refit.shrink,
+                shrink,
                 black_box: self.black_box(),
                 held_out_runs: self.held_out_runs(),
             });

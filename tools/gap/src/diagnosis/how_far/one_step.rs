@@ -5,7 +5,7 @@
 //! block adds up (a stroke) is judged by what its error grows by from one sample to the next; what it says
 //! at once (a torque, an opening, an attitude, a weight) by its error.
 
-use xt28_machine::Machine;
+use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
 use super::squares::{BLOCK, Squares};
@@ -50,12 +50,13 @@ pub(super) fn splice(before: Ahead, mut after: Ahead, since_s: f64) -> Ahead {
     after
 }
 
-/// Squares of several residuals, the wheels' speeds taken together. Two that differ in what can be
+/// Squares of several residuals, those of the wheels' speeds taken together and those of their touch. Two that differ in what can be
 /// judged are made alike by `mask`, whose own gaps count.
 #[allow(clippy::ptr_arg)] // The name says more than a slice of pairs.
 pub(super) fn squares(ahead: &Ahead, mask: &Ahead) -> Vec<Squares> {
     let kind = |signal: &Signal| match signal {
-        Signal::WheelSpeed(_) => Signal::WheelSpeed(xt28_machine::Wheel::Fr),
+        Signal::WheelSpeed(_) => Signal::WheelSpeed(Wheel::Fr),
+        Signal::Contact(_) => Signal::Contact(Wheel::Fr),
         other => *other,
     };
     let mut kinds: Vec<Signal> = ahead.iter().map(|(signal, _)| kind(signal)).collect();
@@ -73,4 +74,22 @@ pub(super) fn squares(ahead: &Ahead, mask: &Ahead) -> Vec<Squares> {
         }
     }
     blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::squares::gap;
+    use super::*;
+
+    /// Six wheels that seem to hang count no more than one stroke.
+    #[test]
+    fn what_each_wheel_has_counts_once_for_all_wheels() {
+        let of = |signal, value| (signal, vec![value; BLOCK]);
+        let mut ahead = vec![of(Signal::Stroke, 2.0)];
+        for wheel in Wheel::ALL {
+            ahead.extend([of(Signal::Contact(wheel), 4.0), of(Signal::WheelSpeed(wheel), 6.0)]);
+        }
+        let gap = gap(&squares(&ahead, &ahead));
+        assert!((gap - 4.0).abs() < 1e-12, "{gap}");
+    }
 }

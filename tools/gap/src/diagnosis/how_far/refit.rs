@@ -13,18 +13,17 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
-use xt28_sim::effects::{Block, Parameter, Scope};
+use xt28_sim::effects::{Block, LOCK_STIFFNESS, Parameter, Scope};
 
 use super::course::{Horizon, WIDTH, floors};
-use super::squares::{self, BLOCK};
+use super::squares::{self, BLOCK, LOST};
 use super::twin::Course;
 use super::{HowFar, since_s};
 use crate::diagnosis::knob::{Knob, TOLERANCES};
 use crate::diagnosis::verdict::{Cause, Estimate, Shrink};
 
-/// Tolerances of the machine that may give way beside a cause.
-const NEIGHBOURS: [&str; 5] =
-    ["front mass", "middle mass", "rear mass", "lock stiffness", "drive time constant"];
+/// Tolerances of the machine that may give way beside a cause, and with them the stiffness of all arms' locks.
+const NEIGHBOURS: [&str; 4] = ["front mass", "middle mass", "rear mass", "drive time constant"];
 /// Errors beyond this count linearly, floors.
 const ROBUST: f64 = 5.0;
 /// Time after which errors of the whole machine are drawn anew, in samples: 2 s.
@@ -145,11 +144,7 @@ impl HowFar {
         errors: &[f64],
         since_s: f64,
     ) -> (Vec<Vec<f64>>, Vec<Knob>) {
-        let knobs: Vec<Knob> = TOLERANCES
-            .iter()
-            .filter(|tolerance| NEIGHBOURS.contains(&tolerance.name))
-            .map(Knob::Machine)
-            .collect();
+        let knobs = neighbours();
         let slope = |knob: &Knob| {
             let (mut machine, mut effects) = (self.machine.clone(), effects.clone());
             knob.set(&mut machine, &mut effects, knob.neutral() + knob.tolerance());
@@ -299,8 +294,12 @@ fn errors(course: &Course, machine: &Machine, both: [&Effects; 2], since_s: f64)
     for stretch in &foretold {
         for (measured, ours) in course.measured[stretch.from..].iter().zip(&stretch.rows) {
             for c in 0..WIDTH {
-                let error = (ours[c] - measured[c]) / floors[c];
-                let error = if error.is_finite() { robust(error) } else { 0.0 };
+                let error = match (ours[c].is_finite(), measured[c].is_finite()) {
+                    (true, true) => robust((ours[c] - measured[c]) / floors[c]),
+                    // As where it is judged: a machine that was thrown about is no better for it.
+                    (false, true) => robust(LOST),
+                    (_, false) => 0.0,
+                };
                 errors.push(error / CORRELATED.sqrt());
             }
         }
@@ -366,9 +365,26 @@ fn deviations(
     turns.iter().enumerate().map(of).collect()
 }
 
+/// The tolerances of [`NEIGHBOURS`] and the locks'.
+fn neighbours() -> Vec<Knob> {
+    let named = |name| TOLERANCES.iter().find(|tolerance| tolerance.name == name);
+    let of_machine = NEIGHBOURS.map(|name| Knob::Machine(named(name).expect("a tolerance's name")));
+    let locks = LOCK_STIFFNESS.parameters.iter();
+    let locks = locks.map(|parameter| Knob::Effect(&LOCK_STIFFNESS, parameter, Scope::All));
+    of_machine.into_iter().chain(locks).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn five_tolerances_give_way_beside_a_cause() {
+        let told: Vec<String> = neighbours().iter().map(ToString::to_string).collect();
+        let named = ["front mass", "middle mass", "rear mass", "drive time constant"];
+        assert_eq!(told[..4], named);
+        assert!(told[4].starts_with("lock-stiffness all") && told.len() == 5, "{told:?}");
+    }
 
     #[test]
     fn a_large_error_counts_linearly() {

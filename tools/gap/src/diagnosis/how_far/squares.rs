@@ -14,7 +14,7 @@ use super::twin::Stretch;
 /// Samples of a block: 5 s. Errors of one step and of 5 s that are further apart are taken for independent.
 pub(super) const BLOCK: usize = 50;
 /// What a number that is not one counts for, floors: a machine that was thrown about.
-const LOST: f64 = 1.0e3;
+pub(super) const LOST: f64 = 1.0e3;
 /// Draws of a bootstrap.
 const DRAWS: usize = 400;
 /// Seed of the draws: the same logs give the same intervals.

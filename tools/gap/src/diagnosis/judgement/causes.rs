@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Findings;
 use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::scales::turned;
 use crate::diagnosis::verdict::{Beginning, Cause, Estimate};
 
@@ -22,28 +23,76 @@ const ELSEWHERE: f64 = 0.05;
 /// Causes that are listed.
 const LISTED: usize = 10;
 
-/// Causes with their probabilities; `known` is shared among those of one rank.
+/// Causes with their probabilities, which come to `known` for what may be first.
+///
+/// Where a second cause may be there, what may be first is weighed twice: beside the second, and as if it were not
+/// there, each by how likely that is.
 pub(super) fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
-    let ranks: Vec<Vec<&Candidate>> = match findings.pair.first() {
-        None => vec![findings.single.iter().collect()],
-        Some([first, _]) => {
-            let name = first.fit.hypothesis.effect;
-            // The first may have moved beside the second: it is listed as it is there.
-            let at = first.fit.hypothesis.scope;
-            let own = findings.single.iter().filter(|c| c.fit.hypothesis.effect == name);
-            let elsewhere = own.filter(|c| c.fit.hypothesis.scope != at);
-            let firsts = std::iter::once(first).chain(elsewhere).collect();
-            vec![firsts, findings.pair.iter().map(|[_, second]| second).collect()]
+    let alone = odds(&findings.single.iter().collect::<Vec<_>>());
+    let mut causes = match findings.pair.first() {
+        None => told(&alone, known),
+        Some([first, second]) => {
+            let is_there = is_second(second, findings.evidence());
+            let beside = odds(&firsts(findings, first));
+            let mut causes = told(&mixed([beside, alone], is_there), known);
+            let seconds: Vec<_> = findings.pair.iter().map(|[_, second]| second).collect();
+            told(&odds(&seconds), known * is_there).into_iter().for_each(|c| join(&mut causes, c));
+            causes
         }
     };
-    let rank = |(k, rank): (usize, &Vec<&Candidate>)| {
-        let is_there = if k == 0 { 1.0 } else { is_second(rank[0], findings.evidence()) };
-        shares(rank, known * is_there)
-    };
-    let mut causes: Vec<Cause> = ranks.iter().enumerate().flat_map(rank).collect();
     causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     causes.truncate(LISTED);
     causes
+}
+
+/// What may be `first` beside the second, itself in front as it is told: of the logs' evidence beside the second
+/// where it was sought there, else at its other wheels as they were found alone.
+fn firsts<'a>(findings: &'a Findings, first: &'a Candidate) -> Vec<&'a Candidate> {
+    let Hypothesis { effect, scope } = first.fit.hypothesis;
+    let is_elsewhere =
+        |c: &&Candidate| c.fit.hypothesis.effect == effect && c.fit.hypothesis.scope != scope;
+    match &findings.firsts[..] {
+        [] => std::iter::once(first).chain(findings.single.iter().filter(is_elsewhere)).collect(),
+        again => again.iter().collect(),
+    }
+}
+
+/// Candidates with the share of a probability that each has.
+type Odds<'a> = Vec<(&'a Candidate, f64)>;
+
+/// How a probability is shared among `rank`.
+fn odds<'a>(rank: &[&'a Candidate]) -> Odds<'a> {
+    let best = rank.iter().map(|c| c.score()).fold(f64::NEG_INFINITY, f64::max);
+    let temperature = temperature(best);
+    let weight = |c: &Candidate| ((c.score() - best) / temperature).exp();
+    let total: f64 = rank.iter().map(|c| weight(c)).sum();
+    rank.iter().map(|c| (*c, weight(c) / total)).collect()
+}
+
+/// Odds that are the former with this probability, and the latter else; a hypothesis of both is as in the former.
+fn mixed<'a>([former, latter]: [Odds<'a>; 2], is_former: f64) -> Odds<'a> {
+    let mut all: Odds<'a> = former.into_iter().map(|(c, share)| (c, share * is_former)).collect();
+    for (candidate, share) in latter {
+        let share = share * (1.0 - is_former);
+        match all.iter_mut().find(|(c, _)| c.fit.hypothesis == candidate.fit.hypothesis) {
+            Some((_, known)) => *known += share,
+            None => all.push((candidate, share)),
+        }
+    }
+    all
+}
+
+/// Adds `cause` to `causes`: one that is there already, as the first or as the second, is there either way.
+fn join(causes: &mut Vec<Cause>, cause: Cause) {
+    let Some(known) = causes.iter_mut().find(|known| known.effect == cause.effect) else {
+        causes.push(cause);
+        return;
+    };
+    let probability = known.probability + cause.probability;
+    if cause.probability > known.probability {
+        *known = cause;
+    }
+    known.probability = probability;
 }
 
 /// Probability that a second cause is there beside a first of so many nats.
@@ -57,28 +106,26 @@ pub(in crate::diagnosis) fn temperature(best_nats: f64) -> f64 {
     1.0 + TEMPERATURE_SHARE * best_nats.max(0.0)
 }
 
-/// One cause for each effect, at its best scope, with the probability of all its scopes: `known` is shared
-/// among them.
-fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
-    let best = rank.first().map_or(0.0, |best| best.score());
-    let temperature = temperature(best);
-    let mut of: BTreeMap<&'static str, Vec<(f64, &Candidate)>> = BTreeMap::new();
-    for candidate in rank {
-        let weight = ((candidate.score() - best) / temperature).exp();
-        of.entry(candidate.name()).or_default().push((weight, candidate));
+/// One cause for each effect, at its likeliest scope, with the probability of all its scopes: `known` is shared as
+/// the odds say.
+fn told(odds: &Odds<'_>, known: f64) -> Vec<Cause> {
+    let mut of: BTreeMap<&'static str, Odds<'_>> = BTreeMap::new();
+    for (candidate, share) in odds {
+        of.entry(candidate.name()).or_default().push((*candidate, *share));
     }
+    // Of two that are as likely, the one that came first.
+    of.values_mut().for_each(|at| at.sort_by(|(_, a), (_, b)| b.total_cmp(a)));
     let weights: Vec<(&'static str, f64)> =
-        of.iter().map(|(name, at)| (*name, at.iter().map(|(weight, _)| weight).sum())).collect();
-    let total: f64 = weights.iter().map(|(_, weight)| weight).sum();
-    let cause = |(at, (name, weight)): (&Vec<(f64, &Candidate)>, &(&'static str, f64))| {
-        let fit = &at[0].1.fit;
+        of.iter().map(|(name, at)| (*name, at.iter().map(|(_, share)| share).sum())).collect();
+    let cause = |(at, (name, weight)): (&Odds<'_>, &(&'static str, f64))| {
+        let fit = &at[0].0.fit;
         Cause {
             effect: fit.hypothesis.effect,
             scope: fit.hypothesis.scope,
             scopes: scopes(at, *weight).map(|(c, share)| (c.fit.hypothesis.scope, share)).collect(),
             values: scopes(at, *weight).map(|(c, _)| c.fit.values.clone()).collect(),
-            probability: known * weight / total,
-            parameters: estimates(at[0].1),
+            probability: known * weight,
+            parameters: estimates(at[0].0),
             class: class(name, *weight, &weights),
             begins: (fit.from_s > 0.0)
                 .then(|| Beginning { run: "every run".to_owned(), at_s: fit.from_s }),
@@ -88,12 +135,9 @@ fn shares(rank: &[&Candidate], known: f64) -> Vec<Cause> {
     of.values().zip(&weights).map(cause).collect()
 }
 
-/// A cause at each of the wheels that it may be at, of candidates whose weights come to `total`, the likeliest first.
-fn scopes<'a>(
-    at: &'a [(f64, &Candidate)],
-    total: f64,
-) -> impl Iterator<Item = (&'a Candidate, f64)> {
-    let share = move |(weight, c): &(f64, &'a Candidate)| (*c, weight / total);
+/// A cause at each of the wheels that it may be at, of odds that come to `total`, the likeliest first.
+fn scopes<'a>(at: &'a Odds<'a>, total: f64) -> impl Iterator<Item = (&'a Candidate, f64)> {
+    let share = move |(c, share): &(&'a Candidate, f64)| (*c, share / total);
     let (first, others) = (at.iter().take(1).map(share), at.iter().skip(1).map(share));
     first.chain(others.filter(|(_, share)| *share > ELSEWHERE))
 }
@@ -126,7 +170,8 @@ mod tests {
             Candidate::made_up("rolling-resistance", Scope::Side(Side::Left), 99.0),
             Candidate::made_up("rolling-resistance", Scope::Axle(Axle::Rear), 40.0),
         ];
-        let [cause] = &shares(&all.each_ref(), 1.0)[..] else { panic!("one effect, one cause") };
+        let causes = told(&odds(&all.each_ref()), 1.0);
+        let [cause] = &causes[..] else { panic!("one effect, one cause") };
         assert!((cause.probability - 1.0).abs() < 1e-12);
         let [(Scope::All, all), (Scope::Side(Side::Left), left)] = cause.scopes[..] else {
             panic!("{:?}", cause.scopes)
@@ -149,6 +194,47 @@ mod tests {
         let mut scopes: Vec<String> = first.scopes.iter().map(|(s, _)| s.to_string()).collect();
         scopes.sort();
         assert_eq!(scopes, ["all", "left"]);
+    }
+
+    /// What the logs say of two that look alike does not change for a second that is hardly there, and is what they
+    /// say beside it where it is.
+    #[test]
+    fn rivals_of_the_first_stay_as_likely_as_the_second_leaves_them() {
+        let of = |name: &str, score| Candidate::made_up(name, Scope::All, score);
+        let told = |second: f64| {
+            let findings = Findings {
+                single: vec![of("arm-delay", 80.0), of("valve-lag", 79.0)],
+                pair: vec![[of("arm-delay", 80.0), of("payload", second)]],
+                firsts: vec![of("arm-delay", 120.0), of("valve-lag", 60.0)],
+                ..Findings::default()
+            };
+            let causes = causes(&findings, 1.0);
+            let of = |name| causes.iter().find(|cause| cause.effect.name == name);
+            let [first, rival] = ["arm-delay", "valve-lag"].map(of).map(Option::unwrap);
+            (first.probability, rival.probability, first.class.clone())
+        };
+        let (first, rival, class) = told(13.0);
+        assert!((0.5..0.7).contains(&first) && rival > 0.3, "{first} {rival}");
+        assert_eq!(class, ["arm-delay", "valve-lag"]);
+        let (first, rival, class) = told(60.0);
+        assert!(first > 0.99 && rival < 0.01, "{first} {rival}");
+        assert_eq!(class, ["arm-delay"]);
+    }
+
+    #[test]
+    fn an_effect_that_may_be_first_or_second_is_one_cause() {
+        let of = |name: &str, score| Candidate::made_up(name, Scope::All, score);
+        let findings = Findings {
+            single: vec![of("arm-delay", 80.0), of("payload", 79.0)],
+            pair: vec![[of("arm-delay", 80.0), of("payload", 20.0)]],
+            firsts: vec![of("arm-delay", 90.0)],
+            ..Findings::default()
+        };
+        let causes = causes(&findings, 1.0);
+        assert_eq!(causes.len(), 2);
+        assert!(
+            causes.iter().all(|cause| cause.probability.is_finite() && cause.probability <= 1.0)
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a reader of the verdict should know beside it, a sentence each.
 
+use super::super::agreement::axles_alike;
 use super::super::candidates::Candidate;
 use super::super::evidence::Left;
 use super::super::floor::Signal;
@@ -8,7 +9,6 @@ use super::super::hypothesis::Fit;
 use super::super::inquiry::Inquiry;
 use super::super::signals::{PERIOD_S, command_periods_s};
 use super::super::verdict::Verdict;
-use super::super::wheel_order::axles_alike;
 use super::objection::Objection;
 use super::{Findings, held_out_runs};
 

@@ -9,7 +9,7 @@ use crate::diagnosis::instant::Instant;
 use crate::diagnosis::kinematics::Kinematics;
 
 /// Made of a run's samples when first asked for.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Made {
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
@@ -17,6 +17,13 @@ pub(super) struct Made {
     scrubs: OnceLock<Vec<[f64; 2]>>,
     yaw_rates: OnceLock<Vec<Option<f64>>>,
     torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
+}
+
+/// A copy begins with nothing made: who copies a run's signals changes them, or asks of another machine.
+impl Clone for Made {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl Signals {

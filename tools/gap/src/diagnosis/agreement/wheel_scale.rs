@@ -6,7 +6,7 @@ use core::fmt;
 use xt28_machine::{Machine, Wheel};
 
 use super::along::Along;
-use super::signals::{SMOOTHED, Signals};
+use crate::diagnosis::signals::{SMOOTHED, Signals};
 
 /// Samples between two that are looked at.
 const STRIDE: usize = 10;
@@ -25,9 +25,7 @@ pub struct WheelScale {
 
 /// The wheels of all `runs` that turn beyond what a wheel does beside the others, and beside what the throttle asks:
 /// where half the wheels are off nobody knows which of themselves, and where all are it is one drive's matter.
-#[must_use]
-pub fn wheel_scale(runs: &[Signals]) -> Option<WheelScale> {
-    let machine = Machine::xt28();
+pub(super) fn wheel_scale(runs: &[Signals], machine: &Machine) -> Option<WheelScale> {
     let full_rad_s = machine.drive.speed_full_m_s / machine.wheels.radius_m;
     let off = |wheel: Wheel| {
         let over = |other: &dyn Fn(&Signals, usize) -> f64| {
@@ -101,7 +99,10 @@ mod tests {
     fn a_wheel_of_another_scale_or_sign_is_told_by_its_name() {
         for wheel in Wheel::ALL {
             for factor in [-1.0, 10.0, 0.1] {
-                let found = wheel_scale(&driven(|w| if w == wheel { factor } else { 1.0 }));
+                let found = wheel_scale(
+                    &driven(|w| if w == wheel { factor } else { 1.0 }),
+                    &Machine::xt28(),
+                );
                 let told = found.expect("it is off").to_string();
                 assert_eq!(told, format!("wheel_speed.{wheel} {factor:.2} times"));
             }
@@ -111,7 +112,8 @@ mod tests {
     #[test]
     fn wheels_of_one_side_that_count_the_other_way_are_told_and_the_others_are_not() {
         let right = [Wheel::Fr, Wheel::Mr, Wheel::Br];
-        let found = wheel_scale(&driven(|w| if right.contains(&w) { -1.0 } else { 1.0 }));
+        let found =
+            wheel_scale(&driven(|w| if right.contains(&w) { -1.0 } else { 1.0 }), &Machine::xt28());
         let found = found.expect("three are turned");
         assert_eq!(found.wheels.iter().map(|(wheel, _)| *wheel).collect::<Vec<_>>(), right);
     }
@@ -121,10 +123,14 @@ mod tests {
     fn what_a_wheel_can_do_is_not_complained_of() {
         for factor in [0.85, 1.15, 3.0, 0.0] {
             let one = driven(|w| if w == Wheel::Ml { factor } else { 1.0 });
-            assert_eq!(wheel_scale(&one), None, "{factor}");
+            assert_eq!(wheel_scale(&one, &Machine::xt28()), None, "{factor}");
         }
         for factor in [-1.0, 10.0, 0.0] {
-            assert_eq!(wheel_scale(&driven(|_| factor)), None, "{factor}: of all");
+            assert_eq!(
+                wheel_scale(&driven(|_| factor), &Machine::xt28()),
+                None,
+                "{factor}: of all"
+            );
         }
     }
 }

@@ -8,7 +8,7 @@ use core::fmt;
 use xt28_machine::Machine;
 
 use super::along::Along;
-use super::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 use commanded::commanded_rad;
 
 /// The two joints by their names.
@@ -60,14 +60,12 @@ pub struct JointScale {
 /// The joints of all `runs` whose angles, valves or command are of another sign or unit than the other two. A valve
 /// says it whatever the controller does, and the command whatever the valve does; where only one of the two says so,
 /// a joint that turns too little or too slowly is left to the diagnosis, as machines can have that.
-#[must_use]
-pub fn joint_scale(runs: &[Signals]) -> Option<JointScale> {
-    let machine = Machine::xt28();
-    let commanded: Vec<[Samples; 2]> = runs.iter().map(|s| commanded_rad(s, &machine)).collect();
+pub(super) fn joint_scale(runs: &[Signals], machine: &Machine) -> Option<JointScale> {
+    let commanded: Vec<[Samples; 2]> = runs.iter().map(|s| commanded_rad(s, machine)).collect();
     let odd = |(k, joint): (usize, &'static str)| {
         let asked = runs.iter().zip(&commanded).flat_map(|(s, all)| beside(s, &all[k], k));
         let over_command = times(asked)?;
-        let over_valve = times(runs.iter().flat_map(|s| turned_rad(s, &machine, k)))?;
+        let over_valve = times(runs.iter().flat_map(|s| turned_rad(s, machine, k)))?;
         let odd = odd(over_command, over_valve)?;
         // A rear joint that its valve turns against the front one is steered so.
         let is_told = odd != Odd::Command || k == 0;
@@ -185,7 +183,7 @@ mod tests {
     }
 
     fn told(said: impl Fn(&mut Signals)) -> Vec<(&'static str, Odd)> {
-        let found = joint_scale(&steered(said));
+        let found = joint_scale(&steered(said), &Machine::xt28());
         found.map_or_else(Vec::new, |all| {
             all.joints.iter().map(|one| (one.joint, one.odd)).collect()
         })
@@ -217,7 +215,9 @@ mod tests {
 
     #[test]
     fn what_is_odd_is_told_with_the_channels_to_mend() {
-        let text = |said: &dyn Fn(&mut Signals)| joint_scale(&steered(said)).unwrap().to_string();
+        let text = |said: &dyn Fn(&mut Signals)| {
+            joint_scale(&steered(said), &Machine::xt28()).unwrap().to_string()
+        };
         let angle = text(&|s| scale(&mut s.joint_rad[0], -1.0));
         assert!(
             angle.starts_with("the front joint angle reads -1.00 times what is commanded"),

@@ -4,7 +4,9 @@
 use core::f64::consts::PI;
 use core::fmt;
 
-use super::signals::Signals;
+use xt28_machine::Machine;
+
+use crate::diagnosis::signals::Signals;
 
 /// Two fixes this far apart tell a course, m: some times what a receiver is off by.
 const APART_M: f64 = 2.0;
@@ -35,9 +37,8 @@ pub struct OddHeading {
 }
 
 /// What is wrong with the heading of all `runs`, if the fixes say so.
-#[must_use]
-pub fn odd_heading(runs: &[Signals]) -> Option<OddHeading> {
-    let courses: Vec<[f64; 2]> = runs.iter().flat_map(courses).collect();
+pub(super) fn odd_heading(runs: &[Signals], machine: &Machine) -> Option<OddHeading> {
+    let courses: Vec<[f64; 2]> = runs.iter().flat_map(|s| courses(s, machine)).collect();
     if courses.len() < COURSES_MIN {
         return None;
     }
@@ -80,7 +81,7 @@ fn pointer(angles: impl Iterator<Item = f64>) -> Pointer {
 }
 
 /// Course over ground and heading in the middle, rad, wherever the machine went ahead for some metres.
-fn courses(s: &Signals) -> Vec<[f64; 2]> {
+fn courses(s: &Signals, machine: &Machine) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
     let Some(mut from) = s.fixes.first() else { return all };
     for to in &s.fixes {
@@ -88,7 +89,8 @@ fn courses(s: &Signals) -> Vec<[f64; 2]> {
         if east_m.hypot(north_m) < APART_M {
             continue;
         }
-        let goes_ahead = [from[0], to[0]].iter().all(|at_s| speed_m_s(s, *at_s) > AHEAD_M_S);
+        let ahead_m_s = |at_s: f64| machine.wheels.radius_m * wheel_speed_rad_s(s, at_s);
+        let goes_ahead = [from[0], to[0]].iter().all(|at_s| ahead_m_s(*at_s) > AHEAD_M_S);
         if let (true, Some(heading)) = (goes_ahead, heading_told(s, 0.5 * (from[0] + to[0]))) {
             all.push([north_m.atan2(east_m), heading]);
         }
@@ -107,12 +109,11 @@ fn heading_told(s: &Signals, at_s: f64) -> Option<f64> {
     around.iter().min_by(|a, b| away_s(a).total_cmp(&away_s(b))).map(|told| told[1])
 }
 
-/// How fast wheels of a metre and a half would go ahead, m/s.
-fn speed_m_s(s: &Signals, at_s: f64) -> f64 {
-    const RADIUS_M: f64 = 0.74;
+/// How fast the wheels turn ahead, rad/s.
+fn wheel_speed_rad_s(s: &Signals, at_s: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let i = (at_s / super::signals::DT_S) as usize;
-    if i < s.len { s.mean_wheel_speed_rad_s(i) * RADIUS_M } else { 0.0 }
+    let i = (at_s / crate::diagnosis::signals::DT_S) as usize;
+    if i < s.len { s.mean_wheel_speed_rad_s(i) } else { 0.0 }
 }
 
 impl fmt::Display for OddHeading {
@@ -176,18 +177,23 @@ mod tests {
     #[test]
     fn a_heading_as_the_machine_goes_is_not_complained_of() {
         for turns in [0.0, 0.05, -0.1] {
-            assert_eq!(odd_heading(&driven(turns, |psi| psi)), None);
-            assert_eq!(odd_heading(&driven(turns, |psi| psi + 0.1)), None, "an antenna beside");
+            assert_eq!(odd_heading(&driven(turns, |psi| psi), &Machine::xt28()), None);
+            assert_eq!(
+                odd_heading(&driven(turns, |psi| psi + 0.1), &Machine::xt28()),
+                None,
+                "an antenna beside"
+            );
         }
     }
 
     #[test]
     fn a_compass_is_told_with_the_way_to_mend_it() {
         let compass = |psi: f64| PI / 2.0 - psi;
-        let odd = odd_heading(&driven(0.05, compass)).expect("it turned");
+        let odd = odd_heading(&driven(0.05, compass), &Machine::xt28()).expect("it turned");
         assert!(odd.is_mirrored && (odd.offset_rad - PI / 2.0).abs() < 0.05, "{odd:?}");
         assert!(odd.to_string().ends_with("scale = -1.0, offset = 90"), "{odd}");
-        let straight = odd_heading(&driven(0.0, compass)).expect("a quarter turn beside");
+        let straight =
+            odd_heading(&driven(0.0, compass), &Machine::xt28()).expect("a quarter turn beside");
         assert!(straight.to_string().starts_with("is -90 deg beside it"), "{straight}");
     }
 
@@ -195,19 +201,23 @@ mod tests {
     fn a_heading_of_the_wrong_unit_is_told_where_the_machine_turns() {
         for turns in [0.05, -0.1] {
             let within = |psi: f64| psi.rem_euclid(2.0 * PI);
-            let odd =
-                odd_heading(&driven(turns, |psi| within(psi).to_radians())).expect("it turned");
+            let odd = odd_heading(&driven(turns, |psi| within(psi).to_radians()), &Machine::xt28())
+                .expect("it turned");
             assert!(!odd.is_mirrored && odd.offset_rad.abs() < 0.05, "{odd:?}");
             assert!(odd.to_string().starts_with("changes by 0.0175 times"), "{odd}");
             let compass = |psi: f64| within(PI / 2.0 - psi).to_radians();
-            let odd = odd_heading(&driven(turns, compass)).expect("it turned");
+            let odd = odd_heading(&driven(turns, compass), &Machine::xt28()).expect("it turned");
             assert!(odd.to_string().ends_with("scale = -57.3 would do"), "{odd}");
         }
-        assert_eq!(odd_heading(&driven(0.0, f64::to_radians)), None, "nothing tells");
+        assert_eq!(
+            odd_heading(&driven(0.0, f64::to_radians), &Machine::xt28()),
+            None,
+            "nothing tells"
+        );
     }
 
     #[test]
     fn a_heading_that_wanders_says_nothing_of_its_sense() {
-        assert_eq!(odd_heading(&driven(0.05, |psi| 40.0 * psi)), None);
+        assert_eq!(odd_heading(&driven(0.05, |psi| 40.0 * psi), &Machine::xt28()), None);
     }
 }

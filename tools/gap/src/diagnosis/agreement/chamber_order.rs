@@ -3,10 +3,10 @@
 
 use core::fmt;
 
-use xt28_machine::Wheel;
+use xt28_machine::{Machine, Wheel};
 
 use super::load_scale::made_n;
-use super::signals::Signals;
+use crate::diagnosis::signals::Signals;
 
 /// Pressures that miss the load told by less, N, are in their places: loads come at another rate.
 const MISSED_N: f64 = 4.0e3;
@@ -22,10 +22,9 @@ pub struct SwappedChambers {
 
 /// The wheels whose pressures make the load that their frame tells only in each other's places. The ECU makes
 /// one of the other, so that they agree on every machine, sound or not.
-#[must_use]
-pub fn swapped_chambers(runs: &[Signals]) -> Option<SwappedChambers> {
+pub(super) fn swapped_chambers(runs: &[Signals], machine: &Machine) -> Option<SwappedChambers> {
     let is_swapped = |wheel: &Wheel| {
-        let [as_named_n, swapped_n] = missed_n(runs, *wheel);
+        let [as_named_n, swapped_n] = missed_n(runs, machine, *wheel);
         as_named_n > MISSED_N && swapped_n < MISSED_SHARE * as_named_n
     };
     let wheels: Vec<Wheel> = Wheel::ALL.into_iter().filter(is_swapped).collect();
@@ -35,11 +34,11 @@ pub fn swapped_chambers(runs: &[Signals]) -> Option<SwappedChambers> {
 /// Root mean squares of what the pressures of `wheel` make less the load told, N: as they are named, and in
 /// each other's places; zeros where they are not logged.
 #[allow(clippy::cast_precision_loss)]
-fn missed_n(runs: &[Signals], wheel: Wheel) -> [f64; 2] {
+fn missed_n(runs: &[Signals], machine: &Machine, wheel: Wheel) -> [f64; 2] {
     let (mut squares, mut count) = ([0.0; 2], 0_usize);
     for s in runs {
         let [bore, rod] = &s.chamber_pa[wheel];
-        let made = made_n(bore, rod).zip(made_n(rod, bore));
+        let made = made_n(machine, bore, rod).zip(made_n(machine, rod, bore));
         for ((as_named_n, swapped_n), load_n) in made.zip(&s.cylinder_load_n[wheel]) {
             squares[0] += (as_named_n - load_n).powi(2);
             squares[1] += (swapped_n - load_n).powi(2);
@@ -60,8 +59,6 @@ impl fmt::Display for SwappedChambers {
 
 #[cfg(test)]
 mod tests {
-    use xt28_machine::Machine;
-
     use super::*;
     use crate::{Channel, Series, Terrain};
 
@@ -98,17 +95,19 @@ mod tests {
     #[test]
     fn chambers_swapped_on_one_wheel_are_told_by_the_channels_to_mend() {
         for wheel in Wheel::ALL {
-            let found = swapped_chambers(&carrying(25e3, &[wheel])).expect("they are swapped");
+            let found = swapped_chambers(&carrying(25e3, &[wheel]), &Machine::xt28())
+                .expect("they are swapped");
             assert_eq!(found.wheels, [wheel]);
         }
-        let told = swapped_chambers(&carrying(25e3, &[Wheel::Ml])).unwrap().to_string();
+        let told =
+            swapped_chambers(&carrying(25e3, &[Wheel::Ml]), &Machine::xt28()).unwrap().to_string();
         assert_eq!(told, "bore_pressure.ML reads the rod's and rod_pressure.ML the bore's");
     }
 
     #[test]
     fn chambers_in_their_places_are_not_complained_of_whatever_they_carry() {
         for load_n in [-5e3, 0.0, 25e3, 120e3] {
-            assert_eq!(swapped_chambers(&carrying(load_n, &[])), None);
+            assert_eq!(swapped_chambers(&carrying(load_n, &[]), &Machine::xt28()), None);
         }
     }
 
@@ -120,7 +119,7 @@ mod tests {
             let [of_bore, of_rod] = &mut signals.chamber_pa[Wheel::Fr];
             of_bore.iter_mut().for_each(|pa| *pa *= bore);
             of_rod.iter_mut().for_each(|pa| *pa *= rod);
-            assert_eq!(swapped_chambers(&[signals]), None, "{bore} {rod}");
+            assert_eq!(swapped_chambers(&[signals], &Machine::xt28()), None, "{bore} {rod}");
         }
     }
 }

@@ -6,8 +6,8 @@ use core::fmt;
 use xt28_machine::Wheel;
 
 use super::along::Along;
-use super::signals::Signals;
 use super::wheel_order::{followed, is_told};
+use crate::diagnosis::signals::Signals;
 
 /// Samples between two that are looked at.
 const STRIDE: usize = 10;
@@ -26,8 +26,7 @@ pub struct StrokeScale {
 
 /// The strokes of all `runs` that stand at and move by other than their targets do, beyond any fault, where arms
 /// are told positions that change.
-#[must_use]
-pub fn stroke_scale(runs: &[Signals]) -> Option<StrokeScale> {
+pub(super) fn stroke_scale(runs: &[Signals]) -> Option<StrokeScale> {
     let off = |wheel: Wheel| {
         let all: Vec<Vec<[f64; 2]>> = runs.iter().map(|s| told(s, wheel)).collect();
         let held = Along::of(all.iter().flatten().copied()).times()?;

@@ -5,7 +5,7 @@ use core::fmt;
 
 use xt28_machine::Machine;
 
-use super::signals::{DT_S, Signals};
+use crate::diagnosis::signals::{DT_S, Signals};
 
 /// Time over which ways are held against one another, s.
 const SPAN_S: f64 = 2.0;
@@ -33,9 +33,8 @@ type Ways = [f64; 3];
 /// By how much the wheel speeds of all `runs` are off, where receiver and throttle both say so. Wheels that spin
 /// do what the throttle asks; a throttle on another scale leaves wheels and receiver agreed, and only its sign is
 /// told, for a drive may be weak.
-#[must_use]
-pub fn speed_scale(runs: &[Signals]) -> Option<SpeedScale> {
-    let all: Vec<Ways> = runs.iter().flat_map(ways_m).collect();
+pub(super) fn speed_scale(runs: &[Signals], machine: &Machine) -> Option<SpeedScale> {
+    let all: Vec<Ways> = runs.iter().flat_map(|s| ways_m(s, machine)).collect();
     let both = |a: usize, b: usize| all.iter().map(|ways| ways[a] * ways[b]).sum::<f64>();
     let way_m = |k: usize| all.iter().map(|ways| ways[k].abs()).sum::<f64>();
     let along = |other: usize| both(0, other) / (both(0, 0) * both(other, other)).sqrt();
@@ -52,8 +51,7 @@ pub fn speed_scale(runs: &[Signals]) -> Option<SpeedScale> {
 }
 
 /// Ways from fix to fix, some seconds apart each.
-fn ways_m(s: &Signals) -> Vec<Ways> {
-    let machine = Machine::xt28();
+fn ways_m(s: &Signals, machine: &Machine) -> Vec<Ways> {
     let asked_m_s = |i: usize| machine.drive.speed_full_m_s * s.throttle[i];
     let rolled_m_s = |i: usize| machine.wheels.radius_m * s.mean_wheel_speed_rad_s(i);
     let Some(mut from) = s.fixes.first() else { return Vec::new() };
@@ -125,23 +123,24 @@ mod tests {
 
     #[test]
     fn another_factor_is_told_with_what_it_is_held_against() {
-        let told = speed_scale(&driven(10.0, 1.0)).expect("a factor of ten").to_string();
+        let told =
+            speed_scale(&driven(10.0, 1.0), &Machine::xt28()).expect("a factor of ten").to_string();
         assert!(told.starts_with("10.00 times the way that the receiver goes and 10.00"), "{told}");
-        assert!(speed_scale(&driven(0.1, 1.0)).is_some());
+        assert!(speed_scale(&driven(0.1, 1.0), &Machine::xt28()).is_some());
     }
 
     #[test]
     fn wheels_that_roll_back_while_the_machine_goes_ahead_are_told_and_so_is_a_throttle_that_asks_for_it()
      {
-        let told = speed_scale(&driven(-1.0, 1.0)).expect("the other way");
+        let told = speed_scale(&driven(-1.0, 1.0), &Machine::xt28()).expect("the other way");
         assert!(told.to_string().starts_with("-1.00 times the way that the receiver"), "{told}");
         assert_eq!(told.to_mend(), "the wheel speeds");
         let [mut signals] = driven(1.0, 1.0);
         signals.throttle.iter_mut().for_each(|throttle| *throttle *= -1.0);
-        let told = speed_scale(&[signals]).expect("the throttle is turned");
+        let told = speed_scale(&[signals], &Machine::xt28()).expect("the throttle is turned");
         assert_eq!(told.to_mend(), "the throttle");
         assert_eq!(
-            speed_scale(&driven(1.0, -1.0)),
+            speed_scale(&driven(1.0, -1.0), &Machine::xt28()),
             None,
             "a heading from the stern is told as that"
         );
@@ -151,13 +150,17 @@ mod tests {
     #[test]
     fn what_a_machine_can_do_is_not_complained_of() {
         for (wheels, ground) in [(1.0, 1.0), (1.0, 0.1), (0.2, 0.2), (0.0, 0.0), (1.0, 10.0)] {
-            assert_eq!(speed_scale(&driven(wheels, ground)), None, "{wheels} {ground}");
+            assert_eq!(
+                speed_scale(&driven(wheels, ground), &Machine::xt28()),
+                None,
+                "{wheels} {ground}"
+            );
         }
         let [mut signals] = driven(1.0, 1.0);
         signals.throttle.iter_mut().for_each(|throttle| *throttle *= 0.1);
-        assert_eq!(speed_scale(&[signals]), None, "the throttle is off");
+        assert_eq!(speed_scale(&[signals], &Machine::xt28()), None, "the throttle is off");
         let [mut signals] = driven(10.0, 1.0);
         signals.fixes.clear();
-        assert_eq!(speed_scale(&[signals]), None, "there is no receiver");
+        assert_eq!(speed_scale(&[signals], &Machine::xt28()), None, "there is no receiver");
     }
 }

@@ -5,7 +5,7 @@ use core::fmt;
 
 use xt28_machine::{Machine, Wheel};
 
-use super::signals::{Samples, Signals};
+use crate::diagnosis::signals::{Samples, Signals};
 
 /// Loads below this, as a root mean square, tell no scale, N: a sensor with a bias of 1 MPa makes 8 kN.
 const LOADED_N: f64 = 1.0e4;
@@ -24,10 +24,9 @@ pub struct LoadScale {
 
 /// The wheels whose pressures make another load than the frames tell, beyond any area of a cylinder, where it
 /// is more than one. The ECU makes one of the other, so that they agree on every machine, sound or not.
-#[must_use]
-pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
+pub(super) fn load_scale(runs: &[Signals], machine: &Machine) -> Option<LoadScale> {
     let off = |wheel: Wheel| {
-        let times = times(runs, wheel)?;
+        let times = times(runs, machine, wheel)?;
         let is_off = !(1.0 / TIMES_MAX..=TIMES_MAX).contains(&times);
         is_off.then_some((wheel, times))
     };
@@ -38,10 +37,10 @@ pub fn load_scale(runs: &[Signals]) -> Option<LoadScale> {
 /// What the pressures of `wheel` make of its load, by least squares; nothing where they are not logged, or
 /// where it carries nothing.
 #[allow(clippy::cast_precision_loss)]
-fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
+fn times(runs: &[Signals], machine: &Machine, wheel: Wheel) -> Option<f64> {
     let (mut both, mut told, mut count) = (0.0, 0.0, 0_usize);
     for s in runs {
-        for (made_n, load_n) in pressed_n(s, wheel).zip(&s.cylinder_load_n[wheel]) {
+        for (made_n, load_n) in pressed_n(s, machine, wheel).zip(&s.cylinder_load_n[wheel]) {
             (both, told, count) = (both + made_n * load_n, told + load_n * load_n, count + 1);
         }
     }
@@ -49,16 +48,20 @@ fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
 }
 
 /// What the pressures of `wheel` make, N, sample by sample; nothing where they are not logged.
-pub(super) fn pressed_n(s: &Signals, wheel: Wheel) -> impl Iterator<Item = f64> {
+pub(super) fn pressed_n(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Iterator<Item = f64> {
     let [bore, rod] = &s.chamber_pa[wheel];
-    made_n(bore, rod)
+    made_n(machine, bore, rod)
 }
 
 /// What these pressures of a cylinder's two chambers make, N, sample by sample.
-pub(super) fn made_n(bore_pa: &Samples, rod_pa: &Samples) -> impl Iterator<Item = f64> {
-    let arms = Machine::xt28().arms;
+pub(super) fn made_n(
+    machine: &Machine,
+    bore_pa: &Samples,
+    rod_pa: &Samples,
+) -> impl Iterator<Item = f64> {
+    let [area_bore_m2, area_rod_m2] = [machine.arms.area_bore_m2, machine.arms.area_rod_m2];
     let both = bore_pa.iter().zip(rod_pa);
-    both.map(move |(bore, rod)| bore * arms.area_bore_m2 - rod * arms.area_rod_m2)
+    both.map(move |(bore, rod)| bore * area_bore_m2 - rod * area_rod_m2)
 }
 
 impl fmt::Display for LoadScale {
@@ -90,12 +93,22 @@ mod tests {
 
     #[test]
     fn another_unit_is_told_and_a_sensor_or_another_cylinder_is_not() {
-        let front = [Wheel::Fr, Wheel::Fl];
-        let found = load_scale(&carrying(&front, 0.1)).expect("a factor of ten");
+        let (front, machine) = ([Wheel::Fr, Wheel::Fl], Machine::xt28());
+        let scale = |off: &[Wheel], times: f64| load_scale(&carrying(off, times), &machine);
+        let found = scale(&front, 0.1).expect("a factor of ten");
         assert_eq!(found.to_string(), "0.10 on FR, 0.10 on FL");
-        assert!(load_scale(&carrying(&front, 14.5)).is_some(), "psi for bar");
-        assert_eq!(load_scale(&carrying(&front, 0.5)), None, "a cylinder of half the area");
-        assert_eq!(load_scale(&carrying(&front[..1], 0.0)), None, "one sensor is dead");
-        assert_eq!(load_scale(&carrying(&[], 1.0)), None);
+        assert!(scale(&front, 14.5).is_some(), "psi for bar");
+        assert_eq!(scale(&front, 0.5), None, "a cylinder of half the area");
+        assert_eq!(scale(&front[..1], 0.0), None, "one sensor is dead");
+        assert_eq!(scale(&[], 1.0), None);
+    }
+
+    #[test]
+    fn what_pressures_make_is_told_by_the_cylinders_of_the_machine_that_was_logged() {
+        let mut slender = Machine::xt28();
+        slender.arms.area_bore_m2 *= 0.16;
+        let logged = carrying(&Wheel::ALL, 1.0 / 0.16);
+        assert_eq!(load_scale(&logged, &slender), None);
+        assert!(load_scale(&logged, &Machine::xt28()).is_some());
     }
 }

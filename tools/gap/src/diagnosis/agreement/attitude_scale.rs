@@ -7,9 +7,9 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 
 use super::along::Along;
-use super::floor::Signal;
-use super::generator::Generator;
-use super::signals::Signals;
+use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::{Generator, Residual};
+use crate::diagnosis::signals::Signals;
 
 /// The two angles by their names, each with what is left of it within seconds: what stays, as a bracket that is not
 /// level or ground that is not, says nothing of a scale.
@@ -30,9 +30,8 @@ pub struct AttitudeScale {
 
 /// The angles of all `runs` that read another scale than how the machine stands on its wheels, where ground that
 /// is known and arms that move tell.
-#[must_use]
-pub fn attitude_scale(runs: &[Signals]) -> Option<AttitudeScale> {
-    let all: Vec<[Sways; 2]> = runs.iter().map(sways).collect();
+pub(super) fn attitude_scale(runs: &[Signals], machine: &Machine) -> Option<AttitudeScale> {
+    let all: Vec<[Sways; 2]> = runs.iter().map(|s| sways(s, machine)).collect();
     let off = |(k, (name, _)): (usize, (&'static str, Signal))| {
         let times = times(all.iter().map(|run| &run[k]))?;
         let is_off = !(1.0 / TIMES_MAX..=TIMES_MAX).contains(&times);
@@ -47,16 +46,14 @@ type Sways = Vec<[f64; 2]>;
 
 /// Both angles of a run: a block's error is what the strokes say less the reading, so that the error beside a
 /// unit that reads nothing is what they say.
-fn sways(s: &Signals) -> [Sways; 2] {
-    let machine = Machine::xt28();
-    let errors = |s: &Signals| Generator::Stance.residuals(s, &machine, &Effects::default());
-    // A copy, as what a generator makes of a run once is another machine's here.
+fn sways(s: &Signals, machine: &Machine) -> [Sways; 2] {
+    let errors = |s: &Signals| Generator::Stance.residuals(s, machine, &Effects::default());
     let (read, mut level) = (s.clone(), s.clone());
     level.roll_rad.fill(0.0);
     level.pitch_rad.fill(0.0);
     let (read, level) = (errors(&read), errors(&level));
     ANGLES.map(|(_, signal)| {
-        let of = |all: &[super::Residual]| {
+        let of = |all: &[Residual]| {
             let one = all.iter().find(|residual| residual.signal == signal);
             one.map_or_else(Vec::new, |residual| residual.values.clone())
         };

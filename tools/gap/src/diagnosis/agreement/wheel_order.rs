@@ -3,11 +3,11 @@
 
 use core::fmt;
 
-use xt28_machine::{PerWheel, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 
 use super::load_scale::pressed_n;
-use super::signals::{DT_S, MANUAL_POSITION, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, MANUAL_POSITION, Samples, Signals};
 
 /// How fast an arm follows its target, s: 1 / (0.004 per mm times 212 mm/s), the paper's PI.
 const FOLLOWS_S: f64 = 1.18;
@@ -38,14 +38,14 @@ pub struct Swap {
 /// load that another's frame tells; `None` where every reading follows its own command, or where the
 /// commands do not tell.
 #[must_use]
-pub fn swapped_wheels(runs: &[Signals]) -> Option<Swap> {
+pub fn swapped_wheels(runs: &[Signals], machine: &Machine) -> Option<Swap> {
     let targets = |s: &Signals, w: Wheel| followed(s, w);
     let strokes = |s: &Signals, w: Wheel| s.stroke_m[w].clone();
     let openings = |s: &Signals, w: Wheel| s.opening[w].clone();
     let rates = |s: &Signals, w: Wheel| s.stroke_rate_m_s[w].clone();
     compare(runs, ["target", "stroke"], &targets, &strokes)
         .or_else(|| compare(runs, ["valve current", "stroke"], &openings, &rates))
-        .or_else(|| mispressed(runs))
+        .or_else(|| mispressed(runs, machine))
 }
 
 /// What a stroke should be on its way to its target, m.
@@ -64,7 +64,7 @@ pub(super) fn is_told(s: &Signals, i: usize) -> bool {
 /// Axles whose two arms are never commanded otherwise than each other: no log of these shows there
 /// whether left and right are in their places.
 #[must_use]
-pub(super) fn axles_alike<'a>(
+pub(in crate::diagnosis) fn axles_alike<'a>(
     runs: impl Iterator<Item = &'a Signals> + Clone,
 ) -> Vec<&'static str> {
     let apart = |s: &Signals, [right, left]: [Wheel; 2]| {
@@ -83,8 +83,9 @@ pub(super) fn axles_alike<'a>(
 
 /// Wheels whose pressures make the load that the frame of another tells, and not their own. The ECU makes
 /// one of the other, so that they agree on every machine, sound or not.
-fn mispressed(runs: &[Signals]) -> Option<Swap> {
-    let apart_n = PerWheel::from_fn(|w| PerWheel::from_fn(|v| pressures_off_n(runs, w, v)));
+fn mispressed(runs: &[Signals], machine: &Machine) -> Option<Swap> {
+    let apart_n =
+        PerWheel::from_fn(|w| PerWheel::from_fn(|v| pressures_off_n(runs, machine, [w, v])));
     let meant = |w: Wheel| {
         let own_n = apart_n[w][w];
         let others = Wheel::ALL.into_iter().filter(|v| *v != w);
@@ -99,10 +100,10 @@ fn mispressed(runs: &[Signals]) -> Option<Swap> {
 /// Root mean square of what the pressures of `wheel` make less the load that the frame tells of `other`, N;
 /// zero where no log has pressures.
 #[allow(clippy::cast_precision_loss)]
-fn pressures_off_n(runs: &[Signals], wheel: Wheel, other: Wheel) -> f64 {
+fn pressures_off_n(runs: &[Signals], machine: &Machine, [wheel, other]: [Wheel; 2]) -> f64 {
     let (mut squares, mut count) = (0.0, 0_usize);
     for s in runs {
-        let pressures = pressed_n(s, wheel).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
+        let pressures = pressed_n(s, machine, wheel).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
         for (made_n, load_n) in pressures {
             (squares, count) = (squares + (made_n - load_n).powi(2), count + 1);
         }

@@ -79,6 +79,13 @@ impl Decoder {
         self.names.get(&channel).cloned().unwrap_or_default()
     }
 
+    /// By how much one count of the signal that `channel` is read from changes it, SI; none of one that is not read,
+    /// or that is no count.
+    #[must_use]
+    pub fn step_of(&self, channel: Channel) -> Option<f64> {
+        self.messages.values().find_map(|tap| tap.step_of(channel))
+    }
+
     pub(crate) fn tap(&self, id: CanId) -> Option<&Tap> {
         self.messages.get(&id.dbc())
     }

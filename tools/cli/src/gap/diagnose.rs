@@ -153,7 +153,7 @@ impl Diagnose {
         bar.suspend(|| set.warnings().iter().for_each(|warning| eprintln!("{warning}")));
         let choice = set.choose(&self.fit, &self.held)?;
         let (about, machine_file) = (about.as_deref(), self.machine.as_deref());
-        let given = Given { about, dbc: &self.dbc, machine: machine_file };
+        let given = Given { decoder: &decoder, about, dbc: &self.dbc, machine: machine_file };
         let remarks = remarks(&set, &given)?;
         let left: Vec<String> = left_out(&set, &choice);
         let mut inquiry = set.into_inquiry(machine, &choice, self.accept_wheel_order)?;

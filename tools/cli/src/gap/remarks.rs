@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use xt28_gap::{About, Channel, FieldLog, RunSet, Series};
+use xt28_gap::{About, Channel, Decoder, FieldLog, RunSet, Series};
 use xt28_machine::Wheel;
 
 use crate::Failure;
 
 /// Which files a command was given, and what speaks of its logs.
 pub(super) struct Given<'a> {
+    pub(super) decoder: &'a Decoder,
     pub(super) about: Option<&'a Path>,
     pub(super) dbc: &'a Path,
     pub(super) machine: Option<&'a Path>,
@@ -27,6 +28,7 @@ pub(super) fn remarks(set: &RunSet, given: &Given<'_>) -> Result<Vec<String>, Fa
     let logs: Vec<(&str, &FieldLog)> =
         set.runs().iter().map(|run| (run.file.as_str(), &run.log)).collect();
     all.extend(without_pressures(&logs));
+    all.extend(other_steps(given.decoder));
     Ok(all)
 }
 
@@ -56,6 +58,19 @@ fn unread(about: &About, path: &Path, given: &Given<'_>) -> Vec<String> {
     dbc.into_iter().chain(nominal).collect()
 }
 
+/// Strokes that do not come as the Xt28's ECU sends them, cut off to whole millimetres.
+fn other_steps(decoder: &Decoder) -> Option<String> {
+    const STEP_MM: f64 = 1.0;
+    let steps_mm = Wheel::ALL.into_iter().filter_map(|w| decoder.step_of(Channel::Stroke(w)));
+    let mut steps_mm = steps_mm.map(|step_m| step_m * 1e3);
+    let step_mm = steps_mm.find(|step_mm| (step_mm - STEP_MM).abs() > 1e-6)?;
+    Some(format!(
+        "{} tells strokes in steps of {step_mm} mm. They are taken for ones that were cut off to whole millimetres, as \
+         the Xt28's ECU sends them, so that every arm may seem off by up to half a millimetre.",
+        decoder.message_of(Channel::Stroke(Wheel::Fr)).unwrap_or("The DBC")
+    ))
+}
+
 /// Logs that lack pressures of cylinders, all in one sentence.
 fn without_pressures(logs: &[(&str, &FieldLog)]) -> Option<String> {
     let lacks = |log: &FieldLog| {
@@ -77,9 +92,28 @@ fn without_pressures(logs: &[(&str, &FieldLog)]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use xt28_gap::Mapping;
+
     use super::*;
 
     const ABOUT: &str = "case = \"a\"\ndbc = \"a.dbc\"\nnominal = \"a.toml\"\nrun = []\n";
+
+    const DBC: &str = include_str!("../../../../dbc/xt28.dbc");
+
+    fn decoder(dbc: &str) -> Decoder {
+        Decoder::parse(dbc, Path::new("own.dbc"), &Mapping::default()).unwrap()
+    }
+
+    #[test]
+    fn strokes_in_other_steps_than_millimetres_are_told() {
+        assert_eq!(other_steps(&decoder(DBC)), None);
+        let whole = "SG_ FR : 0|16@1+ (1,0) [0|65535] \"mm\"";
+        assert!(DBC.contains(whole));
+        let told = other_steps(&decoder(&DBC.replace(whole, &whole.replace("(1,0)", "(0.1,0)"))));
+        assert!(
+            told.is_some_and(|told| told.starts_with("PosFront tells strokes in steps of 0.1 mm"))
+        );
+    }
 
     #[test]
     fn what_about_toml_names_and_nobody_reads_is_told() {
@@ -90,8 +124,9 @@ mod tests {
             std::fs::write(file, "").unwrap();
         }
         let about = About::parse(ABOUT, &path).unwrap();
+        let decoder = decoder(DBC);
         let of = |dbc: &Path, machine: Option<&Path>| {
-            unread(&about, &path, &Given { about: Some(&path), dbc, machine })
+            unread(&about, &path, &Given { decoder: &decoder, about: Some(&path), dbc, machine })
         };
         assert!(of(&dbc, Some(&machine)).is_empty());
         let [nominal] = &of(&dbc, None)[..] else { panic!("the machine is another") };

@@ -78,7 +78,12 @@ impl Where {
         let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let machine_file = self.machine.as_deref();
-        let given = Given { about: about.as_deref(), dbc: &self.dbc, machine: machine_file };
+        let given = Given {
+            decoder: &decoder,
+            about: about.as_deref(),
+            dbc: &self.dbc,
+            machine: machine_file,
+        };
         for note in remarks(&set, &given)? {
             eprintln!("{note}");
         }

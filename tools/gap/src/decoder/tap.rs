@@ -70,6 +70,14 @@ impl Tap {
         self.readings.iter().map(|reading| reading.channel)
     }
 
+    /// By how much one count changes `channel`, SI.
+    pub(crate) fn step_of(&self, channel: Channel) -> Option<f64> {
+        let reading = self.readings.iter().find(|reading| reading.channel == channel)?;
+        let Reading { signal, si_per, .. } = reading;
+        let field = &signal.field;
+        (!field.is_float()).then(|| (field.factor * si_per).abs())
+    }
+
     /// Why nothing is read from `frame`; `None` where it can be. More bytes than the DBC says are no
     /// reason: some nodes pad all they send to eight.
     pub(crate) fn unread(&self, frame: &Frame) -> Option<Unread> {

@@ -229,9 +229,10 @@ impl ArmEcu {
         let ArmDemand::Position(target_mm) = demand else {
             self.control = PerWheel::splat(PositionControl::default());
             return match demand {
-                ArmDemand::Valve(opening) => {
-                    PerWheel::from_fn(|w| self.gains[w].bounded(opening[w]))
-                }
+                // Only a stroke that is known says which way an arm may still go.
+                ArmDemand::Valve(opening) => PerWheel::from_fn(|w| {
+                    if self.monitor.trusts(w) { self.gains[w].bounded(opening[w]) } else { 0.0 }
+                }),
                 _ => PerWheel::splat(0.0),
             };
         };

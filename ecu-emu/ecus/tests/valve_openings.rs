@@ -151,3 +151,43 @@ fn openings_out_of_line_are_refused_while_the_last_good_ones_are_fresh() {
         refused_for_three_periods(bad, ArmStatusReason::Counter);
     }
 }
+
+/// Nobody knows which way such an arm may still go: a stroke at 0 mV reads as 0 mm, one at 5000 mV as
+/// fully out, wherever the arm is.
+#[test]
+fn an_arm_whose_stroke_is_in_doubt_waits_while_the_others_move() {
+    for stroke_mv in [0.0, 199.0, 4801.0, 5000.0, f64::NAN] {
+        for percent in [20.0, -20.0] {
+            let mut arm = Arm::new();
+            let whole_mv = arm.pins.stroke_mv;
+            open_all(&mut arm, percent);
+            assert_eq!(total_ma(&arm), 6.0 * 480.0);
+            arm.pins.stroke_mv[Wheel::Mr] = stroke_mv;
+            // Up to 200 ms it is doubted, then a fault.
+            for _ in 0..20 {
+                assert_eq!(open_all(&mut arm, percent).state, ArmStatusState::Active);
+                assert_eq!(arm.solenoids_ma(Wheel::Mr), [0.0; 2], "{stroke_mv} mV, {percent} %");
+                assert_eq!(total_ma(&arm), 5.0 * 480.0, "the others go on");
+            }
+            arm.pins.stroke_mv = whole_mv;
+            open_all(&mut arm, percent);
+            assert_eq!(total_ma(&arm), 6.0 * 480.0, "it is whole again");
+        }
+    }
+}
+
+/// A wire that is out for less than 200 ms at a time is never known for broken. Between times the stroke
+/// is read and holds the valve; while it is out, nothing may open it.
+#[test]
+fn a_loose_wire_does_not_take_the_stroke_s_end_away() {
+    for (end_mm, percent, loose_mv) in [(501.0, 20.0, 0.0), (0.0, -20.0, 5000.0)] {
+        let mut arm = Arm::new();
+        let end_mv = pins::stroke_mv(end_mm * 1e-3);
+        for k in 0..210 {
+            arm.pins.stroke_mv[Wheel::Fl] = if k % 21 == 0 { end_mv } else { loose_mv };
+            let openings = arm.openings([0.0, percent, 0.0, 0.0, 0.0, 0.0]);
+            assert_eq!(tick(&mut arm, &openings).state, ArmStatusState::Active);
+            assert_eq!(total_ma(&arm), 0.0, "{end_mm} mm, tick {k}");
+        }
+    }
+}

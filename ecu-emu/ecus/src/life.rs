@@ -163,8 +163,10 @@ mod tests {
         assert_eq!(State::SafeStop.next(Health::Good, MOVE), State::SafeStop);
         assert_eq!(State::SafeStop.next(Health::Good, None), State::SafeStop);
         assert_eq!(State::SafeStop.next(Health::Good, REST), State::Standby);
-        let early = Some(Commanded { request: Request::Rest, frames: REARM_FRAMES - 1 });
-        assert_eq!(State::SafeStop.next(Health::Good, early), State::SafeStop);
+        for (frames, next) in [(1, State::SafeStop), (2, State::SafeStop), (3, State::Standby)] {
+            let back = Some(Commanded { request: Request::Rest, frames });
+            assert_eq!(State::SafeStop.next(Health::Good, back), next, "{frames}");
+        }
     }
 
     #[test]

@@ -184,3 +184,45 @@ fn throttle_without_enable_is_refused() {
     assert_eq!(status.reason, DriveStatusReason::NotEnabled);
     assert_eq!(drive.out.pump_ma, [0.0; 4]);
 }
+
+/// Of a stream that comes back, two frames that ask for rest could be the tail of something older; the
+/// third ends the stop. A silence between them, here of six periods, begins the count anew.
+#[test]
+fn a_safe_stop_of_the_arms_ends_with_the_third_frame_that_asks_for_rest() {
+    use ArmStatusState::{SafeStop, Standby};
+    let mut arm = Arm::new();
+    arm.send(ArmTargetMode::ManualPosition, 200.0);
+    let lost: Vec<_> = (0..6).map(|_| arm.tick().state).collect();
+    assert_eq!(lost.last(), Some(&SafeStop));
+    let mut rests = |count: usize, silence: usize| -> Vec<_> {
+        let states = (0..count).map(|_| {
+            arm.send(ArmTargetMode::Off, 0.0);
+            arm.tick().state
+        });
+        let states = states.collect();
+        (0..silence).for_each(|_| assert_eq!(arm.tick().state, SafeStop));
+        states
+    };
+    assert_eq!(rests(2, 6), [SafeStop; 2]);
+    assert_eq!(rests(3, 0), [SafeStop, SafeStop, Standby]);
+}
+
+#[test]
+fn a_safe_stop_of_the_drive_ends_with_the_third_frame_that_asks_for_rest() {
+    use DriveStatusState::{SafeStop, Standby};
+    let mut drive = Drive::new(0.0);
+    drive.send(20.0, 10.0, true);
+    let lost: Vec<_> = (0..6).map(|_| drive.tick().state).collect();
+    assert_eq!(lost.last(), Some(&SafeStop));
+    let mut rests = |count: usize, silence: usize| -> Vec<_> {
+        let states = (0..count).map(|_| {
+            drive.send(0.0, 10.0, false);
+            drive.tick().state
+        });
+        let states = states.collect();
+        (0..silence).for_each(|_| assert_eq!(drive.tick().state, SafeStop));
+        states
+    };
+    assert_eq!(rests(2, 6), [SafeStop; 2]);
+    assert_eq!(rests(3, 0), [SafeStop, SafeStop, Standby]);
+}

@@ -2,7 +2,7 @@
 
 use xt28_dbc::messages::{DriveStatus, DriveStatusState, DriveTarget, Eec1, MachineStatus};
 use xt28_dbc::{CanId, Frame};
-use xt28_ecus::{DriveEcu, DriveOutputs, DrivePins, Port, pins};
+use xt28_ecus::{DriveEcu, DriveOutputs, DrivePins, Port, State, pins};
 use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
 
 /// Fault bit of a silent engine.
@@ -11,12 +11,15 @@ const ENGINE_FAULT: u16 = 1 << 4;
 struct Rig {
     ecu: DriveEcu,
     out: DriveOutputs,
+    /// Of all wheels, on 0.74 m.
+    speed_m_s: f64,
     ms: u64,
 }
 
 impl Rig {
     fn new() -> Self {
-        Self { ecu: DriveEcu::new(&Machine::xt28()), out: DriveOutputs::default(), ms: 0 }
+        let (ecu, out) = (DriveEcu::new(&Machine::xt28()), DriveOutputs::default());
+        Self { ecu, out, speed_m_s: 0.0, ms: 0 }
     }
 
     fn now(&self) -> SimTime {
@@ -39,7 +42,7 @@ impl Rig {
         let pins = DrivePins {
             joint_front_mv: pins::joint_front_mv(10.0_f64.to_radians()),
             joint_rear_mv: pins::joint_rear_mv((-5.0_f64).to_radians()),
-            wheel_hz: PerWheel::splat(0.0),
+            wheel_hz: PerWheel::splat(pins::wheel_hz(self.speed_m_s / 0.74)),
             wheel_forward: PerWheel::splat(true),
             pump_mv: [pins::pump_mv(25e5); 4],
             supply_mv: 24_000.0,
@@ -67,6 +70,47 @@ fn a_braked_machine_is_not_driven() {
         assert_eq!(rig.out.pump_ma, [0.0; 4]);
         assert_eq!(rig.out.motor_ma[Wheel::Ml], 0.0, "full displacement");
     }
+}
+
+/// Pumps that push on while the throttle's lag runs out would do so against a closed brake.
+#[test]
+fn a_brake_at_speed_shuts_the_pumps_at_once() {
+    let mut rig = Rig::new();
+    rig.speed_m_s = 0.9;
+    for _ in 0..200 {
+        rig.command(60.0, false);
+        rig.tick();
+    }
+    // Above a third of full speed the pumps are full.
+    assert!((rig.out.pump_ma[1] - 605.0).abs() < 1e-9, "{:?}", rig.out.pump_ma);
+    for _ in 0..20 {
+        rig.command(60.0, true);
+        let (status, display) = rig.tick();
+        assert!(status.brake && !rig.out.brake_released);
+        assert_eq!(rig.out.pump_ma, [0.0; 4]);
+        assert_eq!(rig.out.motor_ma, PerWheel::splat(0.0), "full displacement");
+        assert_eq!(display.drive_mode, 1, "neutral");
+    }
+    // Released, it sets off as from rest.
+    rig.command(60.0, false);
+    rig.tick();
+    let demand = 0.6 * (1.0 - (-0.01_f64 / 0.15).exp());
+    let pump_ma = rig.out.pump_ma[1];
+    assert!((pump_ma - (195.0 + 410.0 * 3.0 * demand)).abs() < 1e-9, "{pump_ma}");
+}
+
+/// A machine that creeps down a slope at 0.03 m/s still rolls; one at 0.015 m/s stands.
+#[test]
+fn a_safe_stop_brakes_no_machine_that_still_creeps() {
+    let mut rig = Rig::new();
+    rig.speed_m_s = 0.03;
+    rig.command(20.0, false);
+    for _ in 0..100 {
+        assert!(!rig.tick().0.brake);
+    }
+    assert_eq!(rig.ecu.state(), State::SafeStop);
+    rig.speed_m_s = 0.015;
+    assert!(rig.tick().0.brake);
 }
 
 /// Facts 2.5: 1 neutral, 4 forward, 16 reverse; turn mode 64 follow; half degrees, left > 0.

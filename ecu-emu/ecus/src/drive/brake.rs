@@ -60,7 +60,7 @@ mod tests {
     fn a_safe_stop_brakes_when_standing() {
         let mut brake = ParkingBrake::default();
         assert!(!brake.step(at(0), State::Active, Some(false), 1.0));
-        assert!(!brake.step(at(10), State::SafeStop, None, 0.5));
+        assert!(!brake.step(at(10), State::SafeStop, None, 0.021));
         assert!(brake.step(at(20), State::SafeStop, None, -0.019));
         assert!(brake.step(at(30), State::SafeStop, Some(false), 0.1), "it stays on");
         assert!(brake.step(at(40), State::Standby, None, 0.0));

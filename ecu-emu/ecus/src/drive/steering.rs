@@ -4,7 +4,8 @@ use xt28_machine::Articulation;
 
 use crate::life::PERIOD_S;
 
-/// Limit of the error integral, deg s (assumed: 20 % of full opening with the nominal gains).
+/// Limit of the error integral, deg s: 20 % of full opening with the nominal gains. No public source has
+/// one; the logged machine's currents do not fit another (`docs/second-opinion.md`).
 const WINDUP_DEG_S: f64 = 40.0;
 
 /// The controller of one joint: opening = kp (e + ki * integral of e). The gains multiply: read as
@@ -169,6 +170,6 @@ mod tests {
             assert!(openings.iter().all(|o| o.abs() <= 1.0), "{openings:?}");
         }
         let [front, _] = steering.step(0.0, [0.0; 2], 1.0);
-        assert!((front - 0.025 * 0.2 * WINDUP_DEG_S).abs() < 1e-12, "{front}");
+        assert!((front - 0.025 * 0.2 * 40.0).abs() < 1e-12, "{front}");
     }
 }

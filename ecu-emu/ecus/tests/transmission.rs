@@ -97,6 +97,26 @@ fn a_wheel_in_the_air_leaves_its_circuit_s_torque_to_the_others() {
     assert_eq!(rig.motors(), PerWheel::splat(1.0));
 }
 
+/// A machine that runs out keeps what it has: a wheel that finds grip again on the way would be asked for
+/// more just as all others are asked for less.
+#[test]
+fn a_trim_stays_while_the_machine_runs_out_and_is_gone_at_its_end() {
+    let mut rig = Rig::new();
+    rig.pins.wheel_hz[Wheel::Mr] = pins::wheel_hz(1.5);
+    rig.drive(30.0, 4.0);
+    let spinning = rig.motors()[Wheel::Mr];
+    assert!((spinning - 0.3).abs() < 1e-3, "{spinning}");
+    rig.pins.wheel_hz[Wheel::Mr] = pins::wheel_hz(0.5);
+    // The lag of 0.15 s leaves 0.3 exp(-0.5 / 0.15) = 1 % of demand after half a second.
+    rig.drive(0.0, 0.5);
+    let [one, two] = rig.pumps();
+    assert!(one > 0.02 && two > 0.02, "{one} {two}: still running out");
+    assert_eq!(rig.motors()[Wheel::Mr], spinning);
+    rig.drive(0.0, 1.5);
+    assert_eq!(rig.pumps(), [0.0; 2]);
+    assert_eq!(rig.motors(), PerWheel::splat(1.0));
+}
+
 #[test]
 fn a_bend_is_no_slip() {
     let mut rig = Rig::new();

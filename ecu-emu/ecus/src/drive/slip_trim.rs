@@ -138,6 +138,18 @@ mod tests {
         }
     }
 
+    /// Others at 0.5 rad/s, one at 0.8: ahead by 0.3, of which 1 rpm, 0.1047 rad/s, and a quarter of 0.5
+    /// are free. Twice the rest, 0.0703, over 0.5 is taken off: 28.1 %.
+    #[test]
+    fn a_wheel_that_slips_a_little_gives_way_a_little() {
+        let mut wheels = PerWheel::splat(0.5);
+        wheels[Wheel::Bl] = 0.8;
+        let trimmed = settled(wheels, [0.0; 2]);
+        assert!((trimmed.motor[Wheel::Bl] - 0.719).abs() < 5e-4, "{trimmed:?}");
+        wheels[Wheel::Bl] = 0.5 + 0.2297;
+        assert_eq!(settled(wheels, [0.0; 2]).motor, PerWheel::splat(1.0), "all of it is free");
+    }
+
     #[test]
     fn a_wheel_that_lags_and_a_machine_that_stands_are_left_alone() {
         let mut wheels = PerWheel::splat(0.5);

@@ -254,13 +254,15 @@ fn bus_off_purges_and_needs_a_new_order() {
 #[test]
 fn a_script_of_valves_sends_valve_frames_and_targets_that_hold() {
     let mut bench =
-        armed(script("[[command]]\nat_s = 0.5\nopening_percent = [10, -10, 0, 0, 30, -30]\n"));
+        armed(script("[[command]]\nat_s = 0.5\nopening_percent = [10, -10, 5, -20, 30, -30]\n"));
     assert!(bench.sent_of(ArmValve::ID).is_none());
     for _ in 0..60 {
         bench.tick();
     }
-    let valve = ArmValve::decode(&bench.sent_of(ArmValve::ID).unwrap()).unwrap();
-    assert_eq!((valve.fr_percent, valve.bl_percent), (10.0, -30.0));
+    let v = ArmValve::decode(&bench.sent_of(ArmValve::ID).unwrap()).unwrap();
+    let percent =
+        [v.fr_percent, v.fl_percent, v.mr_percent, v.ml_percent, v.br_percent, v.bl_percent];
+    assert_eq!(percent, [10.0, -10.0, 5.0, -20.0, 30.0, -30.0]);
     let target = bench.arm_target().unwrap();
     assert_eq!((target.mode, target.fr_mm), (ArmTargetMode::ManualValve, 510.0));
 }
@@ -282,6 +284,21 @@ fn a_scripted_step_reaches_the_wire_as_a_ramp_in_steps_of_two_millimetres() {
     }
     assert!(seen_240, "{before}");
     assert!(bench.gateway.status().outcome == Outcome::Reached);
+}
+
+#[test]
+fn every_arm_is_sent_the_target_that_is_its_own() {
+    let mut bench =
+        armed(script("[[command]]\nat_s = 0\nstroke_mm = [150, 160, 180, 190, 200, 210]\n"));
+    let mut seen_mm = None;
+    for _ in 0..300 {
+        bench.tick();
+        let t = bench.arm_target().unwrap();
+        if t.mode == ArmTargetMode::ManualPosition {
+            seen_mm = Some([t.fr_mm, t.fl_mm, t.mr_mm, t.ml_mm, t.br_mm, t.bl_mm]);
+        }
+    }
+    assert_eq!(seen_mm, Some([150.0, 160.0, 180.0, 190.0, 200.0, 210.0]));
 }
 
 /// A node's frames leave in the order in which they were queued: behind a fix's, of low priority, a command

@@ -34,10 +34,11 @@ fn valves_open_as_told_up_to_the_cap_while_both_streams_live() {
     arm.send(ArmTargetMode::ManualValve, HOLD_MM);
     assert_eq!(arm.tick().state, ArmStatusState::Active);
     assert_eq!(total_ma(&arm), 0.0, "no openings yet");
-    let openings = arm.openings([80.0, -10.0, 0.0, 0.0, 0.0, -100.0]);
+    let openings = arm.openings([80.0, -10.0, 5.0, -15.0, 25.0, -100.0]);
     assert_eq!(tick(&mut arm, &openings).mode, ArmStatusMode::ManualValve);
-    assert_eq!(arm.out.solenoid_b_ma.0, [520.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-    assert_eq!(arm.out.solenoid_a_ma.0, [0.0, 440.0, 0.0, 0.0, 0.0, 520.0]);
+    // 4 mA per % above 400 mA, up to the cap of 30 %: B extends, A retracts.
+    assert_eq!(arm.out.solenoid_b_ma.0, [520.0, 0.0, 420.0, 0.0, 500.0, 0.0]);
+    assert_eq!(arm.out.solenoid_a_ma.0, [0.0, 440.0, 0.0, 460.0, 0.0, 520.0]);
     for _ in 0..3 {
         arm.send(ArmTargetMode::ManualValve, HOLD_MM);
         assert_eq!(arm.tick().state, ArmStatusState::Active);

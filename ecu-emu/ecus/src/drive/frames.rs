@@ -118,3 +118,37 @@ pub(super) fn status(s: &Status, out: &mut Outbox) {
     };
     send(out, &status.encode());
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_dbc::{CanId, Frame};
+    use xt28_machine::PerWheel;
+
+    use super::*;
+
+    fn frame_of(outbox: &Outbox, id: CanId) -> Frame {
+        *outbox.frames().iter().find(|frame| frame.id() == id).expect("sent")
+    }
+
+    /// A drive never has current on both sides of a pump, and seldom another one in each motor: its
+    /// log would not show one in another's place.
+    #[test]
+    fn every_current_of_the_drive_is_logged_in_its_own_place() {
+        let outputs = DriveOutputs {
+            pump_ma: [30.0, 60.0, 90.0, 120.0],
+            steer_front_a_ma: 150.0,
+            steer_front_b_ma: 180.0,
+            steer_rear_a_ma: 210.0,
+            steer_rear_b_ma: 240.0,
+            motor_ma: PerWheel([33.0, 63.0, 93.0, 123.0, 153.0, 183.0]),
+            ..DriveOutputs::default()
+        };
+        let mut out = Outbox::default();
+        currents(&outputs, &mut out);
+        // Facts 2.6: bytes of 3 mA; pumps 1A 1B 2A 2B, front A B, rear A B; motors 1 to 6, two zeros.
+        let drive = frame_of(&out, CanId::Extended(0x18FE_1015));
+        assert_eq!(drive.data(), [10, 20, 30, 40, 50, 60, 70, 80]);
+        let motors = frame_of(&out, CanId::Extended(0x18FE_1016));
+        assert_eq!(motors.data(), [11, 21, 31, 41, 51, 61, 0, 0]);
+    }
+}

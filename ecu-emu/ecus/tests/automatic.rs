@@ -24,6 +24,10 @@ struct Rig {
 impl Rig {
     /// Level at the nominal height, every cylinder with the same load.
     fn new() -> Self {
+        Self::of(&Machine::xt28())
+    }
+
+    fn of(machine: &Machine) -> Self {
         let pins = ArmPins {
             stroke_mv: PerWheel::splat(pins::stroke_mv(0.2505)),
             pressure_a_mv: PerWheel::splat(pins::pressure_mv(7e6)),
@@ -31,7 +35,7 @@ impl Rig {
             supply_mv: 24_000.0,
         };
         Self {
-            ecu: ArmEcu::new(&Machine::xt28()),
+            ecu: ArmEcu::new(machine),
             now: SimTime::ZERO,
             pins,
             roll_rad: 0.0,
@@ -84,11 +88,21 @@ fn a_level_machine_at_its_height_is_left_alone() {
 
 #[test]
 fn height_comes_from_the_targets_and_from_the_machine_without_them() {
-    let mut rig = Rig::new();
-    rig.automatic(300.0);
-    assert!(rig.opening().0.iter().all(|o| *o > 0.05), "{:?}", rig.opening());
-    rig.automatic(200.0);
-    assert!(rig.opening().0.iter().all(|o| *o < -0.05), "{:?}", rig.opening());
+    // 20 mm at 760 kN/m and 13e-6 per N; the integral has added a fiftieth in its 0.2 s.
+    let opens = 0.2 * 0.988 * 1.02;
+    let mut higher = Machine::xt28();
+    higher.levelling.height_m = 0.27;
+    for (machine, mm, opening) in [
+        (Machine::xt28(), 270.0, opens),
+        (Machine::xt28(), 230.0, -opens),
+        (higher.clone(), HOLD_MM, opens),
+        (higher, 250.0, 0.0),
+    ] {
+        let mut rig = Rig::of(&machine);
+        rig.automatic(mm);
+        let close = |o: &f64| (o - opening).abs() < 0.005;
+        assert!(rig.opening().0.iter().all(close), "{mm} mm: {:?}", rig.opening());
+    }
 }
 
 #[test]
@@ -122,6 +136,61 @@ fn a_wheel_that_carries_too_much_gives_way_and_the_sum_of_all_stays() {
     // Its neighbours take over; neither the sum nor the balance of the sides is touched.
     assert!(opening[Wheel::Fr] > 0.02 && opening[Wheel::Br] > 0.02, "{opening:?}");
     assert!(opening.mean().abs() < 0.005, "{opening:?}");
+}
+
+/// What is not as it should be, and how far it opens one valve.
+type Disturbance = (fn(&mut Rig), Wheel, f64);
+
+#[test]
+fn each_weight_is_that_of_its_own_controller() {
+    // Forces in the gains of the machine file, then 13e-6 of opening per N.
+    let disturbances: [Disturbance; 4] = [
+        // 20 mm too low at 760 kN/m: 15.2 kN.
+        (|rig| rig.pins.stroke_mv = PerWheel::splat(pins::stroke_mv(0.2305)), Wheel::Mr, 0.198),
+        // 0.035 rad at 340 kN/rad: 11.9 kN.
+        (|rig| rig.roll_rad = 0.035, Wheel::Ml, 0.155),
+        // 0.02 rad at 1160 kN/rad: 23.2 kN.
+        (|rig| rig.pitch_rad = 0.02, Wheel::Br, 0.302),
+        // 40 bar on 78.5 cm2 are 15.7 kN at the wheel (facts 1.4). With axles at 0, -3.7 and -6.05 m
+        // the evenest split leaves 1/3 + 0.45^2 / 37.21 of it on its own middle wheel: 10.4 kN less.
+        (|rig| rig.pins.pressure_a_mv[Wheel::Mr] = pins::pressure_mv(11e6), Wheel::Mr, -0.135),
+    ];
+    for (own, (disturb, wheel, opening)) in disturbances.into_iter().enumerate() {
+        for weight in 0..4 {
+            for value in [0.0, 0.5] {
+                let mut machine = Machine::xt28();
+                machine.levelling.weights[weight] = value;
+                let mut rig = Rig::of(&machine);
+                disturb(&mut rig);
+                rig.automatic(HOLD_MM);
+                let share = if weight == own { value } else { 1.0 };
+                // The integral adds a fiftieth in 0.2 s; the inertial unit has 0.001 g a count.
+                let error = rig.opening()[wheel] - 1.02 * share * opening;
+                assert!(error.abs() < 0.008, "{own}, weight {weight}: {:?}", rig.opening());
+            }
+        }
+    }
+}
+
+/// All arms at an end, and a roll that asks one side to go on.
+#[test]
+fn no_valve_opens_towards_a_stroke_end() {
+    for (stroke_mm, target_mm) in [(0.0, 0.0), (501.0, 500.0)] {
+        let mut rig = Rig::new();
+        rig.pins.stroke_mv = PerWheel::splat(pins::stroke_mv(stroke_mm * 1e-3));
+        rig.roll_rad = 0.035;
+        rig.automatic(target_mm);
+        let opening = rig.opening();
+        for (right, left) in
+            [(Wheel::Fr, Wheel::Fl), (Wheel::Mr, Wheel::Ml), (Wheel::Br, Wheel::Bl)]
+        {
+            if stroke_mm == 0.0 {
+                assert!(opening[right] == 0.0 && opening[left] > 0.1, "{opening:?}");
+            } else {
+                assert!(opening[right] < -0.1 && opening[left] == 0.0, "{opening:?}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -172,17 +241,24 @@ fn an_input_in_doubt_opens_no_valve_then_or_later() {
         |pins| pins.stroke_mv[Wheel::Fr] = 0.0,
     ];
     for broken in breaks {
-        let mut rig = Rig::new();
-        rig.automatic(HOLD_MM);
-        let sound = rig.pins;
-        broken(&mut rig.pins);
-        for tick in 0..60 {
-            if tick == 19 {
-                rig.pins = sound;
+        // Level, nothing is to be done; leaning, all six arms would be at work.
+        for roll_rad in [0.0, 0.035] {
+            let mut rig = Rig::new();
+            rig.roll_rad = roll_rad;
+            rig.automatic(HOLD_MM);
+            let (sound, level) = (rig.pins, roll_rad == 0.0);
+            let waits = |rig: &Rig| rig.opening() == PerWheel::splat(0.0);
+            assert_eq!(waits(&rig), level);
+            broken(&mut rig.pins);
+            for tick in 0..60 {
+                if tick == 19 {
+                    rig.pins = sound;
+                }
+                let status = rig.tick(ArmTargetMode::Automatic, HOLD_MM);
+                assert_eq!(status.state, ArmStatusState::Active, "tick {tick}");
+                assert!(waits(&rig) || !level && tick >= 19, "tick {tick}: {:?}", rig.opening());
             }
-            let status = rig.tick(ArmTargetMode::Automatic, HOLD_MM);
-            assert_eq!(status.state, ArmStatusState::Active, "tick {tick}");
-            assert_eq!(rig.opening(), PerWheel::splat(0.0), "tick {tick}");
+            assert_eq!(waits(&rig), level);
         }
     }
 }

@@ -5,13 +5,10 @@ mod rig_2016;
 use std::collections::BTreeMap;
 
 use rig_2016::{Arm, only, stroke_mv};
-use xt28_dbc::messages::{
-    ArmDebug2, Attitude, CentreOfMass, ForceErrRear, OptLoadRear, TuneForce, TuneHeight,
-};
+use xt28_dbc::messages::{Attitude, CentreOfMass, ForceErrRear, OptLoadRear};
 use xt28_dbc::{CanId, Outbox};
-use xt28_ecus::Port;
 use xt28_ecus::firmware_2016::Quirks;
-use xt28_machine::{PerWheel, SimTime};
+use xt28_machine::PerWheel;
 
 fn arm() -> Arm {
     Arm::new(Quirks::firmware())
@@ -168,50 +165,6 @@ fn a_lost_armrest_shuts_the_valves() {
     }
 }
 
-/// Facts 3.9: seen 50 to 60 ms after; the valves follow a tick later.
-#[test]
-fn a_lost_inertial_unit_ends_levelling() {
-    let mut arm = levelling(11);
-    arm.lean_deg = None;
-    let ticks = (1..=30).take_while(|_| {
-        arm.tick();
-        arm.is_levelling()
-    });
-    let ms = 10 * (ticks.count() + 1);
-    assert!((50..=60).contains(&ms), "{ms} ms");
-    arm.ticks(1);
-    assert_eq!(arm.u_ma(), [0; 6]);
-    arm.ticks(5);
-    assert_eq!(arm.display().alert, 1);
-}
-
-#[test]
-fn levelling_waits_for_five_seconds_and_for_the_brake() {
-    let mut early = arm();
-    early.press(18);
-    assert!(!early.is_levelling());
-    let mut braked = arm();
-    braked.until(6.0);
-    braked.status = Some([4, 1]);
-    braked.press(18);
-    assert!(!braked.is_levelling());
-    let seen = ArmDebug2::decode(&only(&braked.out.can1, ArmDebug2::ID)).unwrap().brake_seen;
-    assert_eq!(seen, 4);
-}
-
-#[test]
-fn a_broken_position_sensor_ends_levelling_but_not_jog() {
-    let mut arm = levelling(11);
-    arm.pins.stroke_mv.0[2] = 100.0;
-    arm.ticks(19);
-    assert!(arm.is_levelling());
-    arm.ticks(3);
-    assert!(!arm.is_levelling());
-    arm.stick_mv = Some([2350, 4300]);
-    arm.press(3);
-    assert_eq!((arm.u_ma()[0], arm.display().alert), (300, 1));
-}
-
 #[test]
 fn any_preset_jog_or_passive_button_drops_levelling() {
     for button in [1, 2, 5, 8, 10, 15, 17, 20] {
@@ -274,23 +227,6 @@ fn buttons_13_and_14_shift_the_height_by_50_mm_a_second_within_their_ends() {
     assert_eq!(hold(13, 100), (200.0, 84, true));
     assert_eq!(hold(13, 500).0, 100.0);
     assert_eq!(hold(14, 900), (350.0, -169, true));
-}
-
-#[test]
-fn tuning_frames_set_height_at_once_and_gains_with_button_8() {
-    let mut arm = levelling(11);
-    arm.until(13.0);
-    let height =
-        TuneHeight { unused: 0, height_gain: 1, wheel_skyhook: 0, height_reference_mm: 260.0 };
-    arm.ecu.on_frame(SimTime::ZERO, Port::Can1, &height.encode().unwrap());
-    let force = TuneForce { force_gain: 0, ..TuneForce::default() };
-    arm.ecu.on_frame(SimTime::ZERO, Port::Can1, &force.encode().unwrap());
-    arm.tick();
-    assert_eq!(arm.u_ma(), [-16; 6], "the preset's 10 mA/mm");
-    arm.press(8);
-    arm.press(18);
-    arm.until(20.0);
-    assert_eq!(arm.u_ma(), [-1; 6], "the 1 mA/mm of the frame");
 }
 
 #[test]

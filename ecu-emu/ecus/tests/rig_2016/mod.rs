@@ -32,6 +32,8 @@ pub(crate) struct Arm {
     pub(crate) stick_mv: Option<[u16; 2]>,
     /// Nose up, right side high, deg; `None` is a silent unit.
     pub(crate) lean_deg: Option<[f64; 2]>,
+    /// Which of the unit's frames come: rates, accelerations.
+    pub(crate) lean_heard: [bool; 2],
     /// Brake byte and chair byte; `None` never spoke.
     pub(crate) status: Option<[u8; 2]>,
 }
@@ -51,6 +53,7 @@ impl Arm {
             buttons: Some(Vec::new()),
             stick_mv: Some([2350; 2]),
             lean_deg: Some([0.0; 2]),
+            lean_heard: [true; 2],
             status: Some([0, 1]),
         }
     }
@@ -60,8 +63,9 @@ impl Arm {
         if let Some([pitch, roll]) = self.lean_deg.map(|lean| lean.map(f64::to_radians)) {
             let up = (1.0 - pitch.sin().powi(2) - roll.sin().powi(2)).sqrt();
             let force = [pitch.sin(), -roll.sin(), up].map(|f| f * 9.81);
-            for frame in pins::imu_frames([0.0; 3], force) {
-                self.ecu.on_frame(now, Port::Can2, &frame);
+            let frames = pins::imu_frames([0.0; 3], force);
+            for (frame, _) in frames.iter().zip(self.lean_heard).filter(|(_, heard)| *heard) {
+                self.ecu.on_frame(now, Port::Can2, frame);
             }
         }
         if let Some(buttons) = &self.buttons {

@@ -76,47 +76,6 @@ fn an_arm_in_doubt_waits_while_the_others_go_on() {
 }
 
 #[test]
-fn more_than_one_code_goes_by_broadcast_and_dm2_by_connection() {
-    let mut bench = Bench::new();
-    bench.run(10);
-    bench.arm_pins.stroke_mv = PerWheel::splat(5_000.0);
-    let frames = bench.run(150);
-    let packets: Vec<_> = frames.iter().filter(|f| f.id().raw() == 0x1CEB_FF28).collect();
-    let announced = frames.iter().find(|f| f.id().raw() == 0x1CEC_FF28).unwrap();
-    // Two lamp bytes and six codes are 26 bytes in 4 packets.
-    assert_eq!(announced.data(), [0x20, 26, 0, 4, 0xFF, 0xCA, 0xFE, 0]);
-    assert!(packets.len() >= 4);
-    assert_eq!(packets[0].data()[..6], [1, 0x10, 0xFF, 0x00, 0xF0, 0xE5]);
-
-    bench.arm_pins.stroke_mv = Bench::new().arm_pins.stroke_mv;
-    bench.run(150);
-    bench.offer(0x18EA_28F9, &[0xCB, 0xFE, 0]);
-    let frames = bench.run(3);
-    let rts = frames.iter().find(|f| f.id().raw() == 0x1CEC_F928).expect("to who asked alone");
-    assert_eq!(rts.data(), [0x10, 26, 0, 4, 0xFF, 0xCB, 0xFE, 0]);
-    bench.offer(0x1CEC_28F9, &[0x11, 4, 1, 0xFF, 0xFF, 0xCB, 0xFE, 0]);
-    let frames = bench.run(6);
-    let data: Vec<u8> = frames
-        .iter()
-        .filter(|f| f.id().raw() == 0x1CEB_F928)
-        .flat_map(|f| f.data()[1..].to_vec())
-        .collect();
-    assert_eq!(data.len(), 28);
-    assert_eq!(data[..6], [0x00, 0xFF, 0x00, 0xF0, 0xE5, 1], "no lamp, stroke FR");
-    bench.offer(0x1CEC_28F9, &[0x13, 26, 0, 4, 0xFF, 0xCB, 0xFE, 0]);
-    bench.run(1);
-
-    bench.offer(0x18EA_28F9, &[0xCC, 0xFE, 0]);
-    let frames = bench.run(2);
-    let acknowledged = frames.iter().find(|f| f.id().raw() == 0x18E8_FF28).unwrap();
-    assert_eq!(acknowledged.data(), [0, 0xFF, 0xFF, 0xFF, 0xF9, 0xCC, 0xFE, 0]);
-    bench.offer(0x18EA_28F9, &[0xCB, 0xFE, 0]);
-    let frames = bench.run(2);
-    let dm2 = frames.iter().find(|f| f.id().raw() == 0x18FE_CB28).expect("nothing is left");
-    assert_eq!(dm2.data(), [0, 0xFF, 0, 0, 0, 0, 0xFF, 0xFF]);
-}
-
-#[test]
 fn a_request_for_what_is_not_there_is_denied_but_not_to_all() {
     let mut bench = Bench::new();
     bench.run(2);

@@ -3,6 +3,9 @@
     service_tool.py --bus vcan0     on a CAN interface (python-can)
     service_tool.py --pipe          frames as lines `ID#DATA` on standard input and output
 
+Through the pipe the ECUs' time comes as lines `@MILLISECONDS`, each answered by `@`: they wait for it, so
+that neither side runs out of time while the other is held up. Waits are in their time.
+
 The machine stands with its arms at 170 mm, and the wire of stroke sensor FR breaks at some time.
 Prints what it checked on standard error; exits 1 at the first thing that is not as it must be.
 """
@@ -33,18 +36,30 @@ def check(what, holds):
 
 
 class Pipe:
-    """Frames as lines of text."""
+    """Frames and time as lines of text."""
+
+    def __init__(self):
+        self.now_s, self.lock = 0.0, threading.Lock()
 
     def receive(self):
-        line = sys.stdin.readline()
-        if not line:
-            return None
-        arbitration, data = line.strip().split("#")
-        return int(arbitration, 16), bytes.fromhex(data)
+        while line := sys.stdin.readline().strip():
+            if not line.startswith("@"):
+                arbitration, data = line.split("#")
+                return int(arbitration, 16), bytes.fromhex(data)
+            self.now_s = int(line[1:]) / 1000
+            self.say("@")
+        return None
 
     def send(self, arbitration, data):
-        sys.stdout.write(f"{arbitration:08X}#{bytes(data).hex().upper()}\n")
-        sys.stdout.flush()
+        self.say(f"{arbitration:08X}#{bytes(data).hex().upper()}")
+
+    def say(self, line):
+        with self.lock:
+            sys.stdout.write(line + "\n")
+            sys.stdout.flush()
+
+    def now(self):
+        return self.now_s
 
 
 class Bus:
@@ -67,6 +82,9 @@ class Bus:
         message = self.message(arbitration_id=arbitration, data=data, is_extended_id=True)
         self.bus.send(message)
 
+    def now(self):
+        return time.monotonic()
+
 
 class Hub:
     """Gives every frame to all who listen."""
@@ -88,15 +106,23 @@ class Hub:
         with self.lock:
             self.wire.send(arbitration, data)
 
+    def now(self):
+        return self.wire.now()
+
+    def sleep(self, seconds):
+        end = self.now() + seconds
+        while self.now() < end:
+            time.sleep(0.01)
+
     def ask(self, arbitration, data, wanted, count, timeout=2.0):
         """Sends a frame and gives the first frames that `wanted` holds of."""
-        frames, listener, end = [], self.listen(), time.monotonic() + timeout
+        frames, listener, end = [], self.listen(), self.now() + timeout
         self.send(arbitration, data)
-        while len(frames) < count and (left := end - time.monotonic()) > 0:
+        while len(frames) < count and self.now() < end:
             try:
-                frame = listener.get(timeout=left)
+                frame = listener.get(timeout=0.01)
             except queue.Empty:
-                break
+                continue
             if wanted(frame[0]):
                 frames.append(frame)
         self.listeners.remove(listener)
@@ -120,6 +146,7 @@ def connect(hub, target, **params):
     address = isotp.Address(
         isotp.AddressingMode.NormalFixed_29bits, source_address=TESTER, target_address=target
     )
+    params = {**PATIENCE, **params}
     layer = isotp.TransportLayer(rxfn=receive, txfn=send, address=address, params=params)
     return PythonIsoTpConnection(layer)
 
@@ -137,6 +164,10 @@ class Unsigned(udsoncan.DidCodec):
     def __len__(self):
         return struct.calcsize(self.form)
 
+
+# What the clients wait for by the clock on the wall; through a pipe it says nothing of the ECUs.
+PATIENCE = {}
+LONG_S = 60
 
 CONFIG = {
     "request_timeout": 3,
@@ -181,7 +212,7 @@ def addresses(hub):
         check("function", name >> 40 & 0xFF == function)
 
 
-def sessions(client, raw):
+def sessions(client, hub, raw):
     """Sessions, and what is to be had in them."""
     check("raw data need a session", refused(lambda: client.read_data_by_identifier(raw), 0x31))
     client.change_session(udsoncan.services.DiagnosticSessionControl.Session.extendedDiagnosticSession)
@@ -190,7 +221,7 @@ def sessions(client, raw):
     client.tester_present()
     with client.suppress_positive_response:
         client.tester_present()
-    time.sleep(6.0)
+    hub.sleep(6.0)
     check("a session ends by itself", refused(lambda: client.read_data_by_identifier(raw), 0x31))
     programming = udsoncan.services.DiagnosticSessionControl.Session.programmingSession
     check("no programming", refused(lambda: client.change_session(programming), 0x12))
@@ -216,12 +247,12 @@ def trouble(client, hub):
     spn, fmi = 520192, 5
     code = spn & 0xFFFF
     dtc_id = (code & 0xFF) << 16 | code >> 8 << 8 | spn >> 16 << 5 | fmi
-    end = time.monotonic() + 15
-    while time.monotonic() < end:
+    end = hub.now() + 15
+    while hub.now() < end:
         active = client.get_dtc_by_status_mask(0x01).service_data.dtcs
         if any(dtc.id == dtc_id for dtc in active):
             break
-        time.sleep(0.2)
+        hub.sleep(0.2)
     found = [dtc for dtc in active if dtc.id == dtc_id]
     check("the broken wire", len(found) == 1 and found[0].status.confirmed)
     count = client.get_number_of_dtc_by_status_mask(0x01).service_data
@@ -230,7 +261,7 @@ def trouble(client, hub):
     supported = client.get_supported_dtc().service_data.dtcs
     check("all that there are", len(supported) > 60 and dtc_id in [dtc.id for dtc in supported])
     client.clear_dtc(0xFFFFFF)
-    time.sleep(0.2)
+    hub.sleep(0.2)
     again = [dtc.id for dtc in client.get_dtc_by_status_mask(0x01).service_data.dtcs]
     check("it fails on", dtc_id in again)
     check("no such code", refused(lambda: client.clear_dtc(0x010203), 0x31))
@@ -263,13 +294,17 @@ def main():
     wire.add_argument("--bus")
     wire.add_argument("--pipe", action="store_true")
     arguments = parser.parse_args()
+    if arguments.pipe:
+        CONFIG.update(request_timeout=LONG_S, p2_timeout=LONG_S, p2_star_timeout=LONG_S)
+        long_ms = 1000 * LONG_S
+        PATIENCE.update(rx_flowcontrol_timeout=long_ms, rx_consecutive_frame_timeout=long_ms)
     hub = Hub(Pipe() if arguments.pipe else Bus(arguments.bus))
-    time.sleep(0.5)
+    hub.sleep(0.5)
     addresses(hub)
     with Client(connect(hub, ARM), config=CONFIG) as arm:
         with Client(connect(hub, DRIVE), config=CONFIG) as drive:
             data(arm, drive)
-            sessions(arm, 0x0210)
+            sessions(arm, hub, 0x0210)
             drive.change_session(3)
             drive.read_data_by_identifier(0x0220)
         trouble(arm, hub)

@@ -1,22 +1,30 @@
 //! Stock clients, python's can-isotp and udsoncan, read both ECUs.
 //!
 //! Where a bus is named in `XT28_VCAN` the emulator's own program answers there; without, frames go
-//! through a pipe, and need no bus. Skipped, and said so, where the clients are not installed; with
+//! through a pipe, and need no bus: the ECUs' time never runs ahead of the clock on the wall, and stands
+//! still while the tool or the test is held up. Skipped, and said so, where the clients are not installed; with
 //! `CI` set they have to be.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)] // real time; finds its clients
 
 use std::io::{self, BufRead, BufReader, Write};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc;
+use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use ecu_emu::{Emulator, EmulatorConfig, TICK};
+use rustix::process::{Pid, Signal, kill_process};
 use xt28_dbc::{CanId, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
 use xt28_sim::Terrain;
 
 /// The wire of stroke sensor FR breaks late enough that it reads well first.
 const FAULT: &str = "stroke:FR:open-circuit@10";
+/// Tool and test are each held up once, for longer than ISO-TP waits for the other side (1 s): as the
+/// first and as the second answer of more than one frame begins.
+const HELD_UP: Duration = Duration::from_millis(1500);
+/// So long without a word is not a busy machine any more.
+const HUNG: Duration = Duration::from_secs(60);
 
 fn clients_are_there() -> bool {
     let found = Command::new("python3")
@@ -51,12 +59,78 @@ fn is_diagnostic(id: CanId) -> bool {
         && (matches!(raw >> 16 & 0xFF, 0xDA | 0xDB | 0xE8..=0xEE) || raw >> 9 & 0x7FFF == 0x7F65)
 }
 
-fn parse(line: &str) -> Frame {
-    let (id, data) = line.trim().split_once('#').expect("ID#DATA");
+/// What the tool says: a frame, or that it has heard all up to the newest time.
+enum Said {
+    Frame(Frame),
+    Heard,
+}
+
+fn parse(line: &str) -> Said {
+    let Some((id, data)) = line.trim().split_once('#') else {
+        assert_eq!(line, "@", "ID#DATA or @");
+        return Said::Heard;
+    };
     let data: Vec<u8> = (0..data.len() / 2)
         .map(|i| u8::from_str_radix(&data[2 * i..2 * i + 2], 16).unwrap())
         .collect();
-    Frame::new(CanId::Extended(u32::from_str_radix(id, 16).unwrap()), &data).unwrap()
+    let id = CanId::Extended(u32::from_str_radix(id, 16).unwrap());
+    Said::Frame(Frame::new(id, &data).unwrap())
+}
+
+/// Both ends of the pipe to a tool.
+struct Piped {
+    tool: Child,
+    to: ChildStdin,
+    said: mpsc::Receiver<Said>,
+}
+
+impl Piped {
+    fn start() -> Self {
+        let mut tool = tool(&["--pipe"], true);
+        let (to, from) = (tool.stdin.take().unwrap(), tool.stdout.take().unwrap());
+        let (sender, said) = mpsc::channel();
+        std::thread::spawn(move || {
+            for line in BufReader::new(from).lines().map_while(Result::ok) {
+                let _ = sender.send(parse(&line));
+            }
+        });
+        Self { tool, to, said }
+    }
+
+    /// Gives the tool the frames of a tick and the time, and waits until it has heard them: what it has
+    /// said meanwhile, or nothing once it has ended.
+    fn exchange(&mut self, now: SimTime, out: &Outbox) -> Option<Vec<Frame>> {
+        let frames = out.frames().iter().filter(|frame| is_diagnostic(frame.id()));
+        let mut lines: String = frames.map(|frame| format!("{frame:?}\n")).collect();
+        lines += &format!("@{}\n", now.since(SimTime::ZERO).as_millis());
+        // A tool that has ended has closed its pipe; its status tells how.
+        let _ = self.to.write_all(lines.as_bytes());
+        let mut frames = Vec::new();
+        loop {
+            match self.said.recv_timeout(HUNG) {
+                Ok(Said::Frame(frame)) => frames.push(frame),
+                Ok(Said::Heard) => return Some(frames),
+                Err(mpsc::RecvTimeoutError::Disconnected) => return None,
+                Err(mpsc::RecvTimeoutError::Timeout) => panic!("the tool hangs"),
+            }
+        }
+    }
+
+    /// Halts the tool's program for a while, which is what a busy machine may do to it.
+    fn halt(&self) {
+        let pid = Pid::from_raw(i32::try_from(self.tool.id()).unwrap()).unwrap();
+        kill_process(pid, Signal::STOP).unwrap();
+        std::thread::spawn(move || {
+            sleep(HELD_UP);
+            // It cannot end while it is halted, so this is still its number.
+            kill_process(pid, Signal::CONT).unwrap();
+        });
+    }
+}
+
+/// Whether an answer of more than one frame begins: the tool is to say how it goes on.
+fn is_first_frame(frame: &Frame) -> bool {
+    frame.id().raw() >> 8 == 0x0018_DAF1 && frame.data()[0] >> 4 == 1
 }
 
 #[test]
@@ -67,38 +141,31 @@ fn a_stock_service_tool_reads_both_ecus_through_a_pipe() {
     let mut config = EmulatorConfig::new(Machine::xt28(), Terrain::Flat, Some(1));
     config.mishaps.faults.push(FAULT.parse().unwrap());
     let mut emulator = Emulator::new(&config);
-    let mut tool = tool(&["--pipe"], true);
-    let (mut to, from) = (tool.stdin.take().unwrap(), tool.stdout.take().unwrap());
-    let (sender, frames) = mpsc::channel();
-    std::thread::spawn(move || {
-        for line in BufReader::new(from).lines().map_while(Result::ok) {
-            let _ = sender.send(parse(&line));
-        }
-    });
+    let mut piped = Piped::start();
     let (begun, mut now, mut out) = (Instant::now(), SimTime::ZERO, Outbox::default());
-    let status = loop {
-        if let Some(status) = tool.try_wait().unwrap() {
-            break status;
-        }
+    let mut answers = 0;
+    loop {
+        let tick_begun = Instant::now();
         assert!(begun.elapsed() < Duration::from_secs(120), "the tool does not come to an end");
-        for frame in frames.try_iter() {
-            emulator.on_frame(now, &frame);
-        }
         out.clear();
         emulator.tick(now, &mut out);
-        let lines: String = out
-            .frames()
-            .iter()
-            .filter(|frame| is_diagnostic(frame.id()))
-            .map(|frame| format!("{frame:?}\n"))
-            .collect();
-        // A tool that has ended has closed its pipe; its status tells how.
-        let _ = to.write_all(lines.as_bytes());
+        let begins = out.frames().iter().any(is_first_frame);
+        answers += u32::from(begins);
+        if begins && answers == 1 {
+            piped.halt();
+        }
+        let Some(frames) = piped.exchange(now, &out) else { break };
+        if begins && answers == 2 {
+            sleep(HELD_UP);
+        }
         now += TICK;
-        let due = begun + now.since(SimTime::ZERO);
-        std::thread::sleep(due.saturating_duration_since(Instant::now()));
-    };
+        frames.iter().for_each(|frame| emulator.on_frame(now, frame));
+        // Never to catch up: to the tool, ECUs in a hurry are ECUs that do not wait for it.
+        sleep(TICK.saturating_sub(tick_begun.elapsed()));
+    }
+    let status = piped.tool.wait().unwrap();
     assert!(status.success(), "{status}");
+    assert!(answers > 2, "{answers} long answers: both sides were held up");
 }
 
 #[test]

@@ -147,6 +147,12 @@ impl Parameter {
         self.get(&Effects::none_on(machine), Scope::All)
     }
 
+    /// Whether it can be off to one side only: neutral is an end of its range, as of a delay.
+    #[must_use]
+    pub fn is_one_sided(&self) -> bool {
+        self.range.contains(&self.neutral)
+    }
+
     /// Its value on the first wheel of `scope`, or its one value where it has no wheel.
     #[must_use]
     pub fn get(&self, effects: &Effects, scope: Scope) -> f64 {

@@ -75,7 +75,7 @@ impl From<&Diagnosis> for Reply {
             scope: cause.scope,
             scope_share: cause.scopes.first().map(|(_, share)| *share),
             probability: Some(cause.probability),
-            stands: cause.probability > 0.5,
+            stands: cause.stands(),
             like: cause
                 .class
                 .iter()

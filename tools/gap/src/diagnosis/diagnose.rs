@@ -8,7 +8,7 @@ use super::excitation::Shown;
 use super::how_far::HowFar;
 use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
-use super::judgement::{Findings, Held, judge};
+use super::judgement::{Findings, HeldOut, judge};
 use super::knob::{Knob, SHIFT_MAX};
 use super::overlap::{Paid, own_share};
 use super::signals::Signals;
@@ -177,8 +177,8 @@ struct Pairs<'a> {
 
 impl Docket<'_> {
     /// What the runs held out say of `fits`, which were found in `court`.
-    fn held(&self, court: &Docket<'_>, fits: &[&Fit]) -> Held {
-        Held {
+    fn held(&self, court: &Docket<'_>, fits: &[&Fit]) -> HeldOut {
+        HeldOut {
             unbent: self.unbent_held(),
             after: court.left_held(fits),
             shifts: court.shifts_held(fits),

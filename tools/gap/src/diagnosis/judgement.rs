@@ -50,14 +50,14 @@ pub struct Findings {
     /// Whether it is another share of that in one half of all runs than in the other.
     pub unevens: Vec<Uneven>,
     /// The runs that were held out.
-    pub held: Held,
+    pub held: HeldOut,
     /// Where the tolerances go beside the best cause or pair, each by how many of its own.
     pub shifts: Vec<(Knob, f64)>,
 }
 
 /// What runs that were held out say of the best cause or pair; nothing where there are none.
 #[derive(Clone, Debug, Default)]
-pub struct Held {
+pub struct HeldOut {
     /// [`Findings::unbent`] of them.
     pub unbent: Vec<Left>,
     /// [`Findings::after`] of them, tolerances at their best there.

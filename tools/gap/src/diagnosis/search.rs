@@ -135,9 +135,8 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
     let mut grid: Vec<Vec<f64>> = Vec::new();
     for (k, p) in parameters.iter().enumerate() {
         let sign = if p.neutral == p.range[0] { 1.0 } else { -1.0 };
-        let one_sided = p.range.contains(&p.neutral);
         let far = FURTHER.map(|reach| sign * reach);
-        let reaches = if one_sided { &far[..] } else { &REACHES[..] };
+        let reaches = if p.is_one_sided() { &far[..] } else { &REACHES[..] };
         let near = reaches.iter().map(|reach| p.neutral + reach * p.tolerance);
         for value in near.chain(falling(p)) {
             let mut values = without(parameters);
@@ -163,7 +162,7 @@ fn grid(parameters: &[Parameter]) -> Vec<Vec<f64>> {
 fn with_amounts(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
     let amount = parameters.iter().position(|p| p.neutral == p.range[0]);
     let (p, Some(j)) = (&parameters[k], amount) else { return Vec::new() };
-    if p.range.contains(&p.neutral) {
+    if p.is_one_sided() {
         return Vec::new();
     }
     let reaches = AMOUNTS.iter().flat_map(|much| THRESHOLDS.map(|far| (*much, far)));
@@ -188,7 +187,7 @@ fn lowered(parameters: &[Parameter], k: usize) -> Vec<Vec<f64>> {
         values[k] *= part;
         values
     });
-    let both_ways = |j: &usize| *j != k && !parameters[*j].range.contains(&parameters[*j].neutral);
+    let both_ways = |j: &usize| *j != k && !parameters[*j].is_one_sided();
     let beside = (0..parameters.len()).filter(both_ways).flat_map(|j| {
         let (p, alone) = (&parameters[j], &alone);
         WITH_LOWERED.into_iter().flat_map(move |reach| {

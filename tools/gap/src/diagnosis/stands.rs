@@ -8,13 +8,19 @@ use super::verdict::{Cause, Diagnosis, Verdict};
 /// A cause at or below this probability is only listed.
 const STANDS_ABOVE: f64 = 0.5;
 
+impl Cause {
+    /// Whether it is more likely there than not. A diagnosis stands by it where it names an effect at all.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.probability > STANDS_ABOVE
+    }
+}
+
 impl Diagnosis {
     /// The causes that it stands by, the likeliest first: none unless the verdict is an effect.
     pub fn stood_by(&self) -> impl Iterator<Item = &Cause> {
-        let stands = move |cause: &&Cause| {
-            self.verdict == Verdict::Effect && cause.probability > STANDS_ABOVE
-        };
-        self.causes.iter().filter(stands)
+        let names_any = self.verdict == Verdict::Effect;
+        self.causes.iter().filter(move |cause| names_any && cause.stands())
     }
 
     /// When the first of those causes begins in every run, s.

@@ -16,9 +16,8 @@ impl HowFar {
         progress("overriding blocks with what they put out", 0.0);
         self.share_out(&mut diagnosis.places);
         diagnosis.share_of = ShareOf::Machine;
-        let stood_by: Vec<usize> = (0..diagnosis.causes.len())
-            .filter(|&k| diagnosis.causes[k].probability > 0.5)
-            .collect();
+        let stood_by: Vec<usize> =
+            (0..diagnosis.causes.len()).filter(|&k| diagnosis.causes[k].stands()).collect();
         progress("fitting the causes on the whole machine", 0.2);
         if !stood_by.is_empty() {
             let causes: Vec<Cause> =

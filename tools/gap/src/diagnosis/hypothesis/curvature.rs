@@ -20,8 +20,8 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// Of `cost`, which is `here` at `at`, from about where it is up by `rise`: jolts of a cost that is no
-    /// smooth one must be small beside that.
+    /// Of `cost`, which is `here` at `at`, by finite differences to about where it is higher by `rise`. The cost is
+    /// not smooth, and `rise` has to be large beside its jumps.
     #[must_use]
     pub(super) fn about(
         cost: &dyn Fn(&[f64]) -> f64,

@@ -8,7 +8,7 @@ use super::super::generator::Generator;
 use super::super::hypothesis::Fit;
 use super::super::knob::Knob;
 use super::allowed::{echoing, excess, is_vague, parting, recurring};
-use super::{Findings, Held};
+use super::{Findings, HeldOut};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
 /// is not in the catalogue bends them by more.
@@ -98,7 +98,7 @@ impl Findings {
     /// explains is in its evidence already.
     pub(super) fn held_left(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        let Held { unbent, after, shifts } = &self.held;
+        let HeldOut { unbent, after, shifts } = &self.held;
         let each = unbent.iter().zip(after);
         let strange = each.filter(|(before, after)| after.square > STRANGE * before.square);
         let left = strange.map(move |(before, after)| Objection {
@@ -256,7 +256,7 @@ mod tests {
         let of = |floors: f64| {
             let square = floors * floors;
             let left = vec![Left::evenly(Generator::Joint(0), Signal::JointAngle, square, 100.0)];
-            let held = Held { unbent: left.clone(), after: left, ..Held::default() };
+            let held = HeldOut { unbent: left.clone(), after: left, ..HeldOut::default() };
             Findings { held, ..Findings::default() }.objection()
         };
         assert!(of(1.4).times < 1.0);
@@ -283,7 +283,7 @@ mod tests {
                 let square = floors * floors;
                 vec![Left::evenly(Generator::Drive, Signal::DrivePressure, square, 100.0)]
             };
-            let held = Held { unbent: left(20.0), after: left(after), ..Held::default() };
+            let held = HeldOut { unbent: left(20.0), after: left(after), ..HeldOut::default() };
             Findings { held, ..Findings::default() }.objection().times
         };
         assert!(of(12.0) < 1.0 && of(19.0) > 3.0);

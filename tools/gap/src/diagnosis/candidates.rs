@@ -36,6 +36,9 @@ pub struct Candidate {
     /// Share of what it gains that another law of the cause beside it could not explain: one where it is
     /// the first.
     pub own_share: f64,
+    /// Whether its size or its beginning was chosen by the runs held out too, among those that the runs fitted leave
+    /// open.
+    pub is_chosen_by_held: bool,
 }
 
 /// How many times as much as it foretells a cause may explain, and what it may explain beside, nats. A
@@ -112,7 +115,8 @@ impl Candidate {
         let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
         let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
         let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
-        Self { fit, held_gain: None, held_most: 0.0, own_share: 1.0 }
+        let is_chosen_by_held = false;
+        Self { fit, held_gain: None, held_most: 0.0, own_share: 1.0, is_chosen_by_held }
     }
 }
 
@@ -232,7 +236,9 @@ impl<'a> Docket<'a> {
     /// The same candidate at the floor of its valley, where it is worth more there.
     fn settled(&self, found: &Candidate) -> Option<Candidate> {
         let settled = found.fit.hypothesis.settled(&self.fit, found.fit.clone());
-        Some(self.weighed(settled)).filter(|settled| settled.score() > found.score())
+        let settled =
+            Candidate { is_chosen_by_held: found.is_chosen_by_held, ..self.weighed(settled) };
+        Some(settled).filter(|settled| settled.score() > found.score())
     }
 
     /// A candidate that explains much and foretells little, with other values among those that the runs
@@ -247,7 +253,8 @@ impl<'a> Docket<'a> {
         let suited = fit.hypothesis.suiting(&self.fit, held, fit);
         let least = fit.log_evidence * (1.0 - OPEN[1]) - OPEN[0];
         let open = Some(suited).filter(|suited| suited.log_evidence > least)?;
-        Some(self.weighed(open)).filter(|suited| suited.score() > found.score())
+        let suited = Candidate { is_chosen_by_held: true, ..self.weighed(open) };
+        Some(suited).filter(|suited| suited.score() > found.score())
     }
 
     /// What a fit is worth on both sets of runs. One that sets in late and then does nothing is looked at
@@ -262,7 +269,7 @@ impl<'a> Docket<'a> {
         fit.log_evidence -= anew(&self.fit, &fit);
         let most = |held: &Evidence<'_>| fit.hypothesis.most(held, fit.from_s, &fit.values);
         let held_most = self.held.as_ref().filter(|_| held_gain.is_some()).map_or(0.0, most);
-        Candidate { fit, held_gain, held_most, own_share: 1.0 }
+        Candidate { fit, held_gain, held_most, own_share: 1.0, is_chosen_by_held: false }
     }
 }
 

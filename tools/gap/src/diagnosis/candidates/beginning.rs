@@ -82,6 +82,7 @@ impl Docket<'_> {
         let about_s = best(from_s, last_s, coarse_s)?;
         let at_s = best(about_s, 3.0, fine_s)?;
         let moved = self.weighed(hypothesis.refit(&self.fit, at_s, values));
+        let moved = Candidate { is_chosen_by_held: true, ..moved };
         (moved.score() > found.score()).then_some(moved)
     }
 

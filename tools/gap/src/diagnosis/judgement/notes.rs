@@ -23,6 +23,7 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
     if held_out_runs(inquiry).is_empty() {
         notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
     }
+    notes.extend(findings.chosen_by_held());
     notes.extend(commanded_seldom(inquiry));
     notes.extend(slopes_unseen(inquiry));
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
@@ -87,6 +88,19 @@ fn joints_elsewhere(objection: &Objection) -> Option<String> {
 }
 
 impl Findings {
+    /// Causes for which the runs held out were no judges alone.
+    fn chosen_by_held(&self) -> Option<String> {
+        let chosen = self.believed().filter(|cause| cause.is_chosen_by_held);
+        let names: Vec<&str> = chosen.map(Candidate::name).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "the runs fitted leave sizes or beginning of {} open; those were taken that suit the runs held out as \
+                 well, so that how much is foretold there, and how far the gap shrinks there, flatters a little",
+                names.join(" and ")
+            )
+        })
+    }
+
     /// Wheels that a mapping has in another order make a machine that stands as no machine does, while
     /// commands and readings agree.
     fn another_order(&self) -> Option<String> {
@@ -141,6 +155,17 @@ mod tests {
 
     use super::super::super::generator::Generator;
     use super::*;
+
+    #[test]
+    fn a_cause_that_the_runs_held_out_helped_to_choose_is_told_to_be_so() {
+        let told = |is_chosen_by_held| {
+            let alone = Candidate::made_up("accumulator-gas", Scope::All, 90.0);
+            let single = vec![Candidate { is_chosen_by_held, ..alone }];
+            Findings { single, ..Findings::default() }.chosen_by_held()
+        };
+        assert_eq!(told(false), None);
+        assert!(told(true).is_some_and(|told| told.contains("of accumulator-gas open")));
+    }
 
     #[test]
     fn what_fits_best_is_named_only_where_it_explains_a_fair_share() {

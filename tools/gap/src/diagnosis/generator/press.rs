@@ -2,6 +2,7 @@
 
 use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::Parts;
+use xt28_sim::effects::SoftTyre;
 
 /// Share of a tyre's deflection by which the radius is smaller that it rolls on: a third is a radial
 /// tyre's, the whole a rigid band's; models that put the contact midway have a half.
@@ -32,10 +33,13 @@ pub(super) fn axles_n(
     axles_n
 }
 
-/// Radius that a wheel pressed by `normal_n` rolls on, m: less than `nominal`'s by what its tyre is softer.
-pub(super) fn rolling_radius_m([nominal, parts]: [&Parts; 2], wheel: Wheel, normal_n: f64) -> f64 {
-    let sag_m = |of: &Parts| normal_n / of.tyres[wheel].stiffness_n_m;
-    parts.radius_m - RADIUS_SHARE * (sag_m(parts) - sag_m(nominal))
+/// Radius that a wheel pressed by `normal_n` rolls on, m: less than the machine file's by what its tyre gives way
+/// beyond a near rigid one, whether the file or an effect makes it soft.
+pub(super) fn rolling_radius_m(parts: &Parts, wheel: Wheel, normal_n: f64) -> f64 {
+    let sag_m = |stiffness_n_m: f64| normal_n / stiffness_n_m;
+    let near_rigid_n_m = SoftTyre::default().stiffness_n_m;
+    parts.radius_m
+        - RADIUS_SHARE * (sag_m(parts.tyres[wheel].stiffness_n_m) - sag_m(near_rigid_n_m))
 }
 
 #[cfg(test)]
@@ -49,10 +53,23 @@ mod tests {
         let machine = Machine::xt28();
         let mut soft = Effects::default();
         soft.wheels[Wheel::Mr].soft_tyre.stiffness_n_m = 3.0e5;
-        let parts = [&Effects::default(), &soft].map(|effects| Parts::new(&machine, effects));
-        let radius_m = |wheel, normal_n| rolling_radius_m([&parts[0], &parts[1]], wheel, normal_n);
-        assert!((radius_m(Wheel::Mr, 30.0e3) - (parts[0].radius_m - 0.045)).abs() < 2.0e-3);
-        assert!((radius_m(Wheel::Mr, 0.0) - parts[0].radius_m).abs() < 1e-12);
-        assert!((radius_m(Wheel::Ml, 30.0e3) - parts[0].radius_m).abs() < 1e-12);
+        let parts = Parts::new(&machine, &soft);
+        let radius_m = |wheel, normal_n| rolling_radius_m(&parts, wheel, normal_n);
+        assert!((radius_m(Wheel::Mr, 30.0e3) - (machine.wheels.radius_m - 0.045)).abs() < 2.0e-3);
+        assert!((radius_m(Wheel::Mr, 0.0) - machine.wheels.radius_m).abs() < 1e-12);
+        assert!((radius_m(Wheel::Ml, 30.0e3) - machine.wheels.radius_m).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_tyre_is_as_soft_by_the_machine_file_as_by_an_effect() {
+        let mut soft = Effects::default();
+        soft.wheels[Wheel::Mr].soft_tyre.stiffness_n_m = 3.0e5;
+        let by_effect = Parts::new(&Machine::xt28(), &soft);
+        let mut machine = Machine::xt28();
+        machine.vehicle.tyre_stiffness_n_m = 3.0e5;
+        let by_file = Parts::new(&machine, &Effects::default());
+        let [effect_m, file_m] =
+            [&by_effect, &by_file].map(|parts| rolling_radius_m(parts, Wheel::Mr, 30.0e3));
+        assert!((effect_m - file_m).abs() < 1e-12, "{effect_m} {file_m}");
     }
 }

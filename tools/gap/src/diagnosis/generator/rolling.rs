@@ -88,7 +88,7 @@ fn held_errors(
     holds: Option<&Holds>,
 ) -> RollingErrors {
     let kinematics = s.kinematics(|| wheel_kinematics(s, machine));
-    let [nominal, parts] = [&Effects::default(), effects].map(|e| Parts::new(machine, e));
+    let parts = Parts::new(machine, effects);
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
     let is_plane = Grade::known(s).is_some();
@@ -102,7 +102,7 @@ fn held_errors(
         let end = (i + STRIDE).min(s.len);
         let load_n = |w| s.cylinder_load_n[w][i];
         let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
-        let radius_m = PerWheel::from_fn(|w| rolling_radius_m([&nominal, &parts], w, normal_n[w]));
+        let radius_m = PerWheel::from_fn(|w| rolling_radius_m(&parts, w, normal_n[w]));
         let mut traction =
             Traction::new(s, machine, effects, &normal_n, i, (before.as_ref(), step_s));
         let held_m_s = holds.map_or(PerWheel::splat(0.0), |holds| holds.slips_m_s(i));

@@ -65,6 +65,7 @@ impl Replay {
             self.mapping.as_deref().map_or_else(|| Ok(Mapping::default()), Mapping::load)?;
         let decoder = Decoder::load(&self.dbc, &mapping)?;
         let log = FieldLog::load(&self.log, &decoder, self.accept_cut)?;
+        log.ensure_one_clock()?;
         let machine = self.machine.as_deref().map_or_else(|| Ok(Machine::xt28()), Machine::load)?;
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;

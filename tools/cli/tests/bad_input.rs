@@ -125,6 +125,16 @@ fn a_number_that_an_effect_does_not_take_is_named() {
 }
 
 #[test]
+fn a_unit_that_a_mapping_says_is_refused_at_the_mappings_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let unit = "{ signal = \"Attitude.Roll\", unit = \"furlong\" }";
+    let mapping = file(&folder, "map.toml", &format!("[signals]\n\"attitude.roll\" = {unit}\n"));
+    let dbc = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dbc/xt28.dbc");
+    let talk = refusal(&["gap", "where", "a.log", "--dbc", dbc, "--mapping", &mapping]);
+    assert!(talk.contains("map.toml:2: signal `Attitude.Roll` is in `furlong`"), "{talk}");
+}
+
+#[test]
 fn a_bus_that_does_not_exist_is_refused_before_anything_starts() {
     let talk = refusal(&["run", "straight-25m", "--bus", "nocan7"]);
     assert!(talk.contains("nocan7"), "{talk}");

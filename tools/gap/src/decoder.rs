@@ -54,7 +54,7 @@ impl Decoder {
             };
             let unit = source.unit.as_deref().unwrap_or(&signal.unit);
             let si_per = channel.dimension().si_per(unit).ok_or_else(|| GapError::Unit {
-                path: path.to_owned(),
+                place: unit_from(path, mapping, channel, source),
                 signal: format!("{}.{}", source.message, source.signal),
                 unit: unit.to_owned(),
                 channel: channel.to_string(),
@@ -124,6 +124,14 @@ fn find<'a>(
     match database.misread(message, signal) {
         Some(problem) => refuse(path.display().to_string(), problem.to_string()),
         None => Ok(Some((message, signal))),
+    }
+}
+
+/// Where the unit of `channel` is said: in the DBC at `path`, unless the mapping says another.
+fn unit_from(path: &Path, mapping: &Mapping, channel: Channel, source: &Source) -> String {
+    match mapping.named_at(channel).filter(|_| source.unit.is_some()) {
+        Some((file, line)) => format!("{}:{line}", file.display()),
+        None => path.display().to_string(),
     }
 }
 

@@ -93,11 +93,11 @@ pub enum GapError {
     },
     /// A signal's unit is not one of its channel.
     #[error(
-        "{path}: signal `{signal}` is in `{unit}`, which is no unit of {channel} ({known}); give the right one in a mapping file"
+        "{place}: signal `{signal}` is in `{unit}`, which is no unit of {channel} ({known}); give the right one in a mapping file"
     )]
     Unit {
-        /// The DBC.
-        path: PathBuf,
+        /// The DBC, or the line of the mapping that says so.
+        place: String,
         /// Message and signal.
         signal: String,
         /// The unit found.
@@ -208,7 +208,7 @@ pub enum GapError {
     },
     /// The log lacks what diagnosis drives the blocks with.
     #[error(
-        "{log}: diagnosis needs {channels}, and the log has none; record them too, or say with --mapping what they are called"
+        "{log}: diagnosis needs {channels}, and log or DBC has none; record them too, or say with --mapping what they are called"
     )]
     Unmeasured {
         /// Name of the log.
@@ -218,7 +218,7 @@ pub enum GapError {
     },
     /// There is too little of a log.
     #[error(
-        "{log}: {duration_s:.1} s long, and a diagnosis needs {least_s:.0} s of one run; leave it out or record longer"
+        "{log}: {duration_s:.2} s long, and a diagnosis needs {least_s:.0} s of one run; leave it out or record longer"
     )]
     TooShort {
         /// The log.

@@ -24,6 +24,9 @@ use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
 use gzip::{Failed, Gzip};
 use intake::Intake;
 
+/// A clock that goes ahead by more leaves two logs in one file, and which is meant is not for us to say.
+const AHEAD_MAX_S: f64 = 1.0;
+
 /// What a log measured and what it commanded, against seconds from its first frame.
 #[derive(Clone, Debug)]
 pub struct FieldLog {
@@ -37,6 +40,27 @@ pub struct FieldLog {
 }
 
 impl FieldLog {
+    /// Refuses two logs in one file.
+    ///
+    /// # Errors
+    /// [`GapError::ClockSteps`], where the clock was set back, or ahead by more than a second: what the machine did
+    /// meanwhile is left out, and what came next is a jump of every signal, which nothing tells from a fault.
+    pub fn ensure_one_clock(&self) -> Result<(), GapError> {
+        for fault in &self.faults {
+            let by_s = match fault.kind {
+                FaultKind::ClockBack { by_s, .. } => -by_s,
+                FaultKind::ClockAhead { by_s, .. } if by_s > AHEAD_MAX_S => by_s,
+                _ => continue,
+            };
+            return Err(GapError::ClockSteps {
+                log: self.name.to_string(),
+                line: fault.line,
+                by_s,
+            });
+        }
+        Ok(())
+    }
+
     /// Reads the log at `path`: candump's or an MCAP file, gzipped or not, as its content says. With
     /// `accept_cut`, a log that ends in the middle of a line is taken as ending before it, and says so
     /// in [`FieldLog::faults`].

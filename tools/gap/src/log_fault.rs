@@ -198,7 +198,8 @@ impl fmt::Display for LogFault {
             }
             FaultKind::Dropped { message, gaps, frames, longest_s, .. } => write!(
                 f,
-                "{message} is missing {frames} frames in {gaps} gaps from here on, the longest {:.1} ms; the value before is held",
+                "{message} is missing {frames} frames in {gaps} gap{} from here on, the longest {:.1} ms; the value before is held",
+                if *gaps == 1 { "" } else { "s" },
                 longest_s * 1e3
             ),
             FaultKind::Repeated { message, frames, of } => write!(

@@ -93,7 +93,7 @@ impl RunSet {
                 (None, None) => Terrain::Flat,
             };
             let log = FieldLog::load(path, decoder, accept_cut)?;
-            soundness::one_clock(&log)?;
+            log.ensure_one_clock()?;
             let claims = match (&about, known.about, told) {
                 (Some(about), Some(file), Some(run)) => claims::denied(about, file, run, &log),
                 _ => Vec::new(),

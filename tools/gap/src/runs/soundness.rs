@@ -2,29 +2,12 @@
 //! values that a machine can have.
 
 use crate::diagnosis::needed;
-use crate::{Channel, Decoder, FaultKind, FieldLog, GapError, Series};
+use crate::{Channel, Decoder, FieldLog, GapError, Series};
 
 /// The whole machine is set anew every five seconds; a shorter log has not one whole piece.
 const LEAST_S: f64 = 5.0;
-/// A clock that goes ahead by more leaves two logs in one file, and which is meant is not for us to say.
-const AHEAD_MAX_S: f64 = 1.0;
 /// Share of values that may be odd: a sensor's spikes, not another scale.
 const ODD_MAX: f64 = 0.01;
-
-/// Refuses two logs in one file.
-pub(super) fn one_clock(log: &FieldLog) -> Result<(), GapError> {
-    for fault in log.faults() {
-        let by_s = match fault.kind {
-            // What the machine did meanwhile is left out, and what came next is a jump of every signal, which
-            // nothing tells from a fault of the machine.
-            FaultKind::ClockBack { by_s, .. } => -by_s,
-            FaultKind::ClockAhead { by_s, .. } if by_s > AHEAD_MAX_S => by_s,
-            _ => continue,
-        };
-        return Err(GapError::ClockSteps { log: log.name().to_owned(), line: fault.line, by_s });
-    }
-    Ok(())
-}
 
 /// Refuses what cannot be diagnosed.
 pub(super) fn check(log: &FieldLog, decoder: &Decoder) -> Result<(), GapError> {

@@ -105,8 +105,11 @@ impl Findings {
     /// commands and readings agree.
     fn another_order(&self) -> Option<String> {
         let tells = |signal| {
-            use Signal::{ArmOpening, Contact, DriveDifference, Roll, WeightX, WeightY};
-            matches!(signal, ArmOpening | Contact(_) | DriveDifference | Roll | WeightX | WeightY)
+            use Signal::{ArmOpening, Contact, DriveDifference, Roll, Stroke, WeightX, WeightY};
+            matches!(
+                signal,
+                ArmOpening | Contact(_) | DriveDifference | Roll | Stroke | WeightX | WeightY
+            )
         };
         let both = self.alone.iter().chain(&self.held.unbent);
         let worst = both.max_by(|a, b| a.square.total_cmp(&b.square))?;

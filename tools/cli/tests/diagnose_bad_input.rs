@@ -64,7 +64,7 @@ fn a_file_that_is_no_database_is_said_to_be_none() {
 fn a_log_that_is_too_short_is_refused_with_its_length() {
     let (_folder, log) = changed(|at_s, rest| (at_s < 2.0).then(|| (at_s, rest.to_owned())));
     let talk = refusal(&[&log]);
-    assert!(talk.contains("changed.log: 2.0 s long, and a diagnosis needs 5 s"), "{talk}");
+    assert!(talk.contains("changed.log: 2.00 s long, and a diagnosis needs 5 s"), "{talk}");
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     assert!(talk.contains(" begins at 2.0 s of a log of 10.0 s"), "{talk}");
     let (status, talk) = heard(3.0, 7.0);
     assert_eq!(status, Some(2), "{talk}");
-    assert!(talk.contains("4.0 s long, and a diagnosis needs 5 s"), "{talk}");
+    assert!(talk.contains("3.99 s long, and a diagnosis needs 5 s"), "{talk}");
     // Pressures are read where they are logged, though a diagnosis does without.
     let (_, talk) = heard_of("PressMid", 0.0, 8.0);
     assert!(talk.contains("bore_pressure.MR stops at 8.0 s"), "{talk}");

@@ -36,7 +36,8 @@ pub(super) fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
             let beside = odds(&firsts(findings, first));
             let mut causes = told(&mixed([beside, alone], is_there), known);
             let seconds: Vec<_> = findings.pair.iter().map(|[_, second]| second).collect();
-            told(&odds(&seconds), known * is_there).into_iter().for_each(|c| join(&mut causes, c));
+            let seconds = told(&odds(&seconds), known * is_there);
+            seconds.into_iter().for_each(|cause| join(&mut causes, cause, known));
             causes
         }
     };
@@ -45,8 +46,8 @@ pub(super) fn causes(findings: &Findings, known: f64) -> Vec<Cause> {
     causes
 }
 
-/// What may be `first` beside the second, itself in front as it is told: of the logs' evidence beside the second
-/// where it was sought there, else at its other wheels as they were found alone.
+/// What may be first beside the second: as it was found there or, where it was not sought beside this one, `first`
+/// and its other wheels as they were found alone.
 fn firsts<'a>(findings: &'a Findings, first: &'a Candidate) -> Vec<&'a Candidate> {
     let Hypothesis { effect, scope } = first.fit.hypothesis;
     let is_elsewhere =
@@ -82,17 +83,18 @@ fn mixed<'a>([former, latter]: [Odds<'a>; 2], is_former: f64) -> Odds<'a> {
     all
 }
 
-/// Adds `cause` to `causes`: one that is there already, as the first or as the second, is there either way.
-fn join(causes: &mut Vec<Cause>, cause: Cause) {
-    let Some(known) = causes.iter_mut().find(|known| known.effect == cause.effect) else {
+/// Adds `cause` to `causes`: one that is there already, as the first or as the second, is there either way, and no
+/// likelier than `known`.
+fn join(causes: &mut Vec<Cause>, cause: Cause, known: f64) {
+    let Some(there) = causes.iter_mut().find(|there| there.effect == cause.effect) else {
         causes.push(cause);
         return;
     };
-    let probability = known.probability + cause.probability;
-    if cause.probability > known.probability {
-        *known = cause;
+    let probability = (there.probability + cause.probability).min(known);
+    if cause.probability > there.probability {
+        *there = cause;
     }
-    known.probability = probability;
+    there.probability = probability;
 }
 
 /// Probability that a second cause is there beside a first of so many nats.

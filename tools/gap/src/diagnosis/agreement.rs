@@ -35,6 +35,10 @@ pub use wheel_order::{Swap, swapped_wheels};
 pub use wheel_scale::WheelScale;
 use wheel_scale::wheel_scale;
 
+/// Samples of a log from one that is compared to the next: ten are compared a second. What has a scale or an order
+/// here moves over tenths of a second and more, so that samples in between would say the same again.
+const COMPARED_EVERY: usize = 10;
+
 /// Refuses `runs` of a machine of `machine`'s make that contradict themselves.
 ///
 /// # Errors

@@ -34,16 +34,17 @@ use xt28_sim::effects::{Block, Effect, Scope};
 use super::belief::Course;
 use super::floor::Signal;
 use super::floors::BlockKey;
-use super::signals::{Samples, Signals};
+use super::signals::{DT_S, Samples, Signals};
 pub(super) use circuits::{PRESSURE_AT_TORQUE_MAX_PA, weights};
 pub(super) use controllers::STEER_WINDUP_DEG_S;
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
-const STRIDE: usize = 10;
+pub(super) const SAMPLES_PER_RESIDUAL: usize = 10;
 /// Time from one sample of a residual to the next, s.
-pub(super) const STEP_S: f64 = 0.1;
+#[allow(clippy::cast_precision_loss)]
+pub(super) const STEP_S: f64 = SAMPLES_PER_RESIDUAL as f64 * DT_S;
 
 /// Effects that show in how the machine stands, beside masses, ground, tyres and their sensors. How hard a wheel
 /// rolls is not among them, though the stance reckons with it: whether its arm feels that is another law on each
@@ -277,7 +278,9 @@ impl Generator {
 /// Means of ten samples, over the floor; `NaN` where one of them is.
 #[allow(clippy::cast_precision_loss)]
 fn thin(raw: &Samples, sigma: f64) -> Samples {
-    raw.chunks_exact(STRIDE).map(|c| c.iter().sum::<f64>() / (STRIDE as f64 * sigma)).collect()
+    raw.chunks_exact(SAMPLES_PER_RESIDUAL)
+        .map(|c| c.iter().sum::<f64>() / (SAMPLES_PER_RESIDUAL as f64 * sigma))
+        .collect()
 }
 
 impl fmt::Display for Generator {

@@ -7,6 +7,7 @@ use core::fmt;
 
 use xt28_machine::Machine;
 
+use super::COMPARED_EVERY;
 use super::along::Along;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 use commanded::commanded_rad;
@@ -15,8 +16,6 @@ use commanded::commanded_rad;
 const JOINTS: [&str; 2] = ["front", "rear"];
 /// Time over which an angle's change is held against what its valve let in, s.
 const SPAN_S: f64 = 2.0;
-/// Samples between two that are looked at.
-const STRIDE: usize = 10;
 /// Root mean square of what is told of a joint or of what it reads, whichever is more, that is too little to tell
 /// a scale by, rad: 0.3 deg ...
 const TURNS_RAD: f64 = 0.005;
@@ -96,7 +95,7 @@ fn beside<'a>(
     commanded_rad: &'a Samples,
     joint: usize,
 ) -> impl Iterator<Item = [f64; 2]> + 'a {
-    (0..s.len).step_by(STRIDE).map(move |i| [commanded_rad[i], s.joint_rad[joint][i]])
+    (0..s.len).step_by(COMPARED_EVERY).map(move |i| [commanded_rad[i], s.joint_rad[joint][i]])
 }
 
 /// What the valve of a joint lets in over some seconds and by how much it turns meanwhile, rad, each less its mean
@@ -110,7 +109,7 @@ fn turned_rad(s: &Signals, machine: &Machine, joint: usize) -> Vec<[f64; 2]> {
         let opened_s = openings[i - span..i].iter().sum::<f64>() * DT_S;
         [rate_rad_s * opened_s, angle_rad[i] - angle_rad[i - span]]
     };
-    let all: Vec<[f64; 2]> = (span..s.len).step_by(STRIDE).map(pair).collect();
+    let all: Vec<[f64; 2]> = (span..s.len).step_by(COMPARED_EVERY).map(pair).collect();
     let mean = |k: usize| all.iter().map(|pair| pair[k]).sum::<f64>() / all.len().max(1) as f64;
     let means = [mean(0), mean(1)];
     all.iter().map(|pair| [pair[0] - means[0], pair[1] - means[1]]).collect()

@@ -5,12 +5,11 @@ use core::fmt;
 
 use xt28_machine::Wheel;
 
+use super::COMPARED_EVERY;
 use super::along::Along;
 use super::wheel_order::{followed, is_told};
 use crate::diagnosis::signals::Signals;
 
-/// Samples between two that are looked at.
-const STRIDE: usize = 10;
 /// Root mean square of a target's motion that is too little to tell a scale by, m.
 const MOVES_M: f64 = 0.003;
 /// How many times more or less than its target an arm may hold and move: one that is stuck, slow or drained does
@@ -44,7 +43,7 @@ pub(super) fn stroke_scale(runs: &[Signals]) -> Option<StrokeScale> {
 /// What a stroke should be on its way to its target, and what it reads, m, where targets count.
 fn told(s: &Signals, wheel: Wheel) -> Vec<[f64; 2]> {
     let followed = followed(s, wheel);
-    let used = (0..s.len).step_by(STRIDE).filter(|i| is_told(s, *i));
+    let used = (0..s.len).step_by(COMPARED_EVERY).filter(|i| is_told(s, *i));
     used.map(|i| [followed[i], s.stroke_m[wheel][i]]).collect()
 }
 

@@ -6,6 +6,7 @@ use core::fmt;
 use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::Lag;
 
+use super::COMPARED_EVERY;
 use super::load_scale::pressed_n;
 use crate::diagnosis::signals::{DT_S, MANUAL_POSITION, Samples, Signals};
 
@@ -22,8 +23,6 @@ const ALIKE_M: f64 = 0.01;
 const PRESSED_N: f64 = 2.0e3;
 /// ... and so are those that miss another's by more than this share of that.
 const PRESSED_SHARE: f64 = 0.25;
-/// Samples between two that are looked at.
-const STRIDE: usize = 10;
 
 /// Wheels that look swapped.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +102,8 @@ fn mispressed(runs: &[Signals], machine: &Machine) -> Option<Swap> {
 fn pressures_off_n(runs: &[Signals], machine: &Machine, [wheel, other]: [Wheel; 2]) -> f64 {
     let (mut squares, mut count) = (0.0, 0_usize);
     for s in runs {
-        let pressures = pressed_n(s, machine, wheel).zip(&s.cylinder_load_n[other]).step_by(STRIDE);
+        let pressures =
+            pressed_n(s, machine, wheel).zip(&s.cylinder_load_n[other]).step_by(COMPARED_EVERY);
         for (made_n, load_n) in pressures {
             (squares, count) = (squares + (made_n - load_n).powi(2), count + 1);
         }
@@ -154,7 +154,8 @@ fn gather(runs: &[Signals], of: Of) -> PerWheel<Samples> {
     let mut all = PerWheel::from_fn(|_| Samples::new());
     for s in runs {
         let wheels = PerWheel::from_fn(|w| of(s, w));
-        let used: Vec<usize> = (0..s.len).step_by(STRIDE).filter(|i| is_told(s, *i)).collect();
+        let used: Vec<usize> =
+            (0..s.len).step_by(COMPARED_EVERY).filter(|i| is_told(s, *i)).collect();
         let apart = |w: Wheel, i: usize| {
             wheels[w][i] - wheels.iter().map(|(_, samples)| samples[i]).sum::<f64>() / 6.0
         };

@@ -5,11 +5,10 @@ use core::fmt;
 
 use xt28_machine::{Machine, Wheel};
 
+use super::COMPARED_EVERY;
 use super::along::Along;
 use crate::diagnosis::signals::{SMOOTHED, Signals};
 
-/// Samples between two that are looked at.
-const STRIDE: usize = 10;
 /// Root mean square of a speed that is too little to tell a scale by, rad/s: 0.07 m/s.
 const TURNS_RAD_S: f64 = 0.1;
 /// How many times more or less than others a wheel may turn: one that is lifted, that digs itself in, a sensor's
@@ -46,7 +45,7 @@ pub(super) fn wheel_scale(runs: &[Signals], machine: &Machine) -> Option<WheelSc
 
 /// The samples of a run that are looked at.
 fn samples(s: &Signals) -> impl Iterator<Item = usize> {
-    (0..s.len).step_by(STRIDE)
+    (0..s.len).step_by(COMPARED_EVERY)
 }
 
 /// The middle one of the speeds of all wheels but one, rad/s: one more that is off moves it little.

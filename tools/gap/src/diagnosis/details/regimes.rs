@@ -2,9 +2,10 @@
 
 use xt28_machine::{Machine, Wheel};
 
-use super::{Pair, STEP_S, rms, wheel_of};
+use super::{Pair, rms, wheel_of};
 use crate::diagnosis::evidence::{BEND_RAD, SHUT};
 use crate::diagnosis::excitation::UNLOADED_N;
+use crate::diagnosis::generator::SAMPLES_PER_RESIDUAL;
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{DT_S, Signals};
 
@@ -76,10 +77,8 @@ pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<Row> {
 }
 
 /// Sample of the log in the middle of sample `k` of a residual.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn instant(k: usize) -> usize {
-    const STRIDE: usize = (STEP_S / DT_S + 0.5) as usize;
-    k * STRIDE + STRIDE / 2
+const fn instant(k: usize) -> usize {
+    k * SAMPLES_PER_RESIDUAL + SAMPLES_PER_RESIDUAL / 2
 }
 
 /// The load in the middle of all that an arm carried off the air, over all runs, N; not a number where

@@ -38,8 +38,8 @@ const CREEPS_NM: f64 = 400.0;
 const ORDINARY: f64 = 1.75;
 /// Speed at which a log's wheels tell what resists them, rad/s.
 const TRAVELS_RAD_S: f64 = 0.3;
-/// Samples from one look to the next.
-pub(super) const STRIDE: usize = 5;
+/// Samples of the log from one look at the wheels to the next.
+pub(super) const SAMPLES_PER_LOOK: usize = 5;
 /// Weight of what pushes tell of a speed, beside a wheel that holds.
 const COASTS: f64 = 0.02;
 /// How fast a wheel's foot may give way to what an idle motor holds it by, m/s/N: from not at all to a little
@@ -77,7 +77,7 @@ fn left_m2_s2(free: &RollingErrors, holds: &Holds, radius_m: f64) -> f64 {
         };
         slips_m_s.iter().map(of).sum::<f64>()
     };
-    (0..free.ahead_m_s.len()).step_by(STRIDE).map(at).sum()
+    (0..free.ahead_m_s.len()).step_by(SAMPLES_PER_LOOK).map(at).sum()
 }
 
 /// Rolling over a run in which idle motors hold wheels as `holds` says.
@@ -96,10 +96,10 @@ fn held_errors(
         wheel_rad_s: PerWheel::from_fn(|_| vec![f64::NAN; s.len]),
         ahead_m_s: vec![0.0; s.len],
     };
-    let step_s = STRIDE as f64 * DT_S;
+    let step_s = SAMPLES_PER_LOOK as f64 * DT_S;
     let (mut ahead, mut before) = (0.0, None);
-    for (i, moves) in (0..s.len).step_by(STRIDE).zip(kinematics) {
-        let end = (i + STRIDE).min(s.len);
+    for (i, moves) in (0..s.len).step_by(SAMPLES_PER_LOOK).zip(kinematics) {
+        let end = (i + SAMPLES_PER_LOOK).min(s.len);
         let load_n = |w| s.cylinder_load_n[w][i];
         let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
         let radius_m = PerWheel::from_fn(|w| rolling_radius_m(&parts, w, normal_n[w]));
@@ -164,7 +164,7 @@ pub fn share_resistance<'a>(runs: impl Iterator<Item = &'a mut Signals>, machine
 fn resists_nm(s: &Signals, machine: &Machine) -> f64 {
     let w = &machine.wheels;
     let torques_nm = (0..s.len)
-        .step_by(STRIDE)
+        .step_by(SAMPLES_PER_LOOK)
         .map(|i| (i, s.mean_wheel_speed_rad_s(i)))
         .filter(|(_, speed)| speed.abs() > TRAVELS_RAD_S)
         .map(|(i, speed)| {
@@ -200,7 +200,7 @@ pub(super) fn wheel_kinematics(s: &Signals, machine: &Machine) -> Vec<Kinematics
             pose,
         }
     };
-    (0..s.len).step_by(STRIDE).map(at).collect()
+    (0..s.len).step_by(SAMPLES_PER_LOOK).map(at).collect()
 }
 
 /// Speed at which each wheel's frame goes over the ground by what its sensor reads, m/s.
@@ -332,7 +332,7 @@ mod tests {
                 // A wheel that rolls to where its arm puts it.
                 let rolls_rad_s =
                     moves.carried_m_s[w] / machine.wheels.radius_m - moves.turns_rad_s[w];
-                s.smooth_wheel_speed_rad_s[w][k * STRIDE..(k + 1) * STRIDE]
+                s.smooth_wheel_speed_rad_s[w][k * SAMPLES_PER_LOOK..(k + 1) * SAMPLES_PER_LOOK]
                     .fill(rolls_rad_s / factor);
             }
         }

@@ -8,7 +8,7 @@
 use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{Effects, Parts};
 
-use super::STRIDE;
+use super::SAMPLES_PER_RESIDUAL;
 use super::axles::Axles;
 use super::grade::Grade;
 use super::press::{axles_n, own_n};
@@ -19,7 +19,7 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 /// Headings and joints are looked at over so long before and after an instant, s: a receiver tells 0.3 deg.
 const HALF_S: f64 = 1.0;
 /// Samples from one look at the joints to the next within that.
-const LOOK: usize = rolling::STRIDE;
+const LOOK: usize = rolling::SAMPLES_PER_LOOK;
 /// The same, s.
 const LOOK_S: f64 = LOOK as f64 * DT_S;
 /// Looks before and after an instant.
@@ -48,12 +48,12 @@ const HOLDS: f64 = 0.6;
 /// No log says how far its tyres creep. What the turns of a whole run leave does.
 #[must_use]
 pub(super) fn yaw_rate_error_rad_s(s: &Signals, machine: &Machine, effects: &Effects) -> Samples {
-    let count = s.len / STRIDE;
+    let count = s.len / SAMPLES_PER_RESIDUAL;
     if s.headings.is_empty() || Grade::known(s).is_none() {
         return vec![f64::NAN; count];
     }
     let said = said_by_joints(s, machine, effects.sensors.gnss_latency.delay_s);
-    let at_s = |k: usize| (k as f64 + 0.5) * STRIDE as f64 * DT_S;
+    let at_s = |k: usize| (k as f64 + 0.5) * SAMPLES_PER_RESIDUAL as f64 * DT_S;
     let read = s.yaw_rates(|| (0..count).map(|k| rate_read(s, at_s(k))).collect());
     let turns = read.iter().enumerate().map(|(k, read)| Some([around(&said, at_s(k))?, (*read)?]));
     let turns: Vec<Option<[f64; 2]>> = turns.collect();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use xt28_machine::Wheel;
 use xt28_sim::Held;
 
-use super::course::{Horizon, Quantity, Row, STRIDE, WIDTH, floors};
+use super::course::{Horizon, Quantity, Row, TICKS_PER_SAMPLE, WIDTH, floors};
 use super::folds::{self, Fold, RIDGES};
 use super::law::{Known, Law, Normal, scales};
 use super::squares::{self, BLOCK, Squares};
@@ -272,7 +272,7 @@ pub(super) fn commands(s: &Signals) -> Vec<[f64; COMMANDS]> {
         all[7] = s.target_joint_rad[i];
         all
     };
-    (0..s.len).step_by(STRIDE).map(at).collect()
+    (0..s.len).step_by(TICKS_PER_SAMPLE).map(at).collect()
 }
 
 #[cfg(test)]

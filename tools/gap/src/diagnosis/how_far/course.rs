@@ -8,8 +8,8 @@ use crate::Channel;
 use crate::diagnosis::generator::is_off_scale;
 use crate::diagnosis::signals::{DT_S, Signals};
 
-/// Ticks of the log's clock from one sample to the next.
-pub(super) const STRIDE: usize = 10;
+/// Ticks of the log's clock, 10 ms each, from one sample of the whole machine to the next.
+pub(super) const TICKS_PER_SAMPLE: usize = 10;
 /// Numbers in a sample.
 pub(super) const WIDTH: usize = 36;
 /// A fix older than this says nothing of now, s: the receiver says eight a second.
@@ -129,7 +129,7 @@ pub(super) fn floors(horizon: Horizon) -> Row {
 
 /// What was measured, sample by sample.
 pub(super) fn measured(s: &Signals) -> Vec<Row> {
-    (0..s.len).step_by(STRIDE).map(|i| row(s, i)).collect()
+    (0..s.len).step_by(TICKS_PER_SAMPLE).map(|i| row(s, i)).collect()
 }
 
 fn row(s: &Signals, i: usize) -> Row {

@@ -2,7 +2,7 @@
 
 use xt28_machine::Wheel;
 
-use super::course::{Quantity, Row, STRIDE};
+use super::course::{Quantity, Row, TICKS_PER_SAMPLE};
 use super::twin::{Course, Stretch};
 use crate::diagnosis::signals::DT_S;
 use crate::{Channel, PumpSide, Series};
@@ -25,7 +25,7 @@ fn channels() -> impl Iterator<Item = (Channel, usize)> {
 /// Channel, measured, foretold.
 #[allow(clippy::cast_precision_loss)]
 pub(super) fn traces(course: &Course, foretold: &[Stretch]) -> Vec<(Channel, Series, Series)> {
-    let at_s = |k: usize| (k * STRIDE) as f64 * DT_S;
+    let at_s = |k: usize| (k * TICKS_PER_SAMPLE) as f64 * DT_S;
     let series = |rows: &mut dyn Iterator<Item = (usize, &Row)>, column: usize| -> Series {
         let known = rows.filter(|(_, row)| row[column].is_finite());
         known.map(|(k, row)| (at_s(k), row[column])).collect()

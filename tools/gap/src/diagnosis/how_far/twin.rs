@@ -6,7 +6,7 @@ use xt28_machine::{Machine, SimTime};
 use xt28_sim::effects::BusEffects;
 use xt28_sim::{Effects, Held, Solver};
 
-use super::course::{Horizon, Quantity, Row, STRIDE, fix, measured};
+use super::course::{Horizon, Quantity, Row, TICKS_PER_SAMPLE, fix, measured};
 use super::measured::Measured;
 use super::reader::Reader;
 use crate::commands::{Command, Speaker, commands};
@@ -111,7 +111,7 @@ impl Course {
             return foretell(effects);
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let since = (since_s / (DT_S * STRIDE as f64)).ceil() as usize;
+        let since = (since_s / (DT_S * TICKS_PER_SAMPLE as f64)).ceil() as usize;
         let both = foretell(before).into_iter().zip(foretell(effects));
         both.map(|(before, after)| splice(before, &after, since)).collect()
     }
@@ -187,8 +187,8 @@ impl<'a> Bench<'a> {
     fn set_out(mut self, from: usize, end: usize, state: &Measured<'_>, held: Held) -> Stretch {
         let start = state.at(from);
         self.emulator.place(&start);
-        let first = from.div_ceil(STRIDE);
-        let mut rows = Vec::with_capacity((end - from).div_ceil(STRIDE));
+        let first = from.div_ceil(TICKS_PER_SAMPLE);
+        let mut rows = Vec::with_capacity((end - from).div_ceil(TICKS_PER_SAMPLE));
         for i in from..end {
             let now = self.hear(SETTLE + i);
             let [east, north, _] = self.emulator.truth().antenna_position_m;
@@ -200,7 +200,7 @@ impl<'a> Bench<'a> {
             }
             self.reader.hear(&self.course.decoder, self.outbox.frames());
             self.outbox.clear();
-            if i % STRIDE == 0 {
+            if i % TICKS_PER_SAMPLE == 0 {
                 let mut row = self.reader.row(&self.course.decoder);
                 if let Some(place) = self.fix(i) {
                     row[Quantity::Position.columns()].copy_from_slice(&place);

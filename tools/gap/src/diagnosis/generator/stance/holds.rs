@@ -24,9 +24,9 @@ const TRAVELS_RAD_S: f64 = 0.03;
 const COMES_TO_REST: usize = 100;
 /// Swing after which the wheels are held by that alone, m.
 const SWUNG_M: f64 = 2.0 * YIELDS_M;
-/// Samples from one step to the next.
-const STRIDE: usize = 5;
-const STEP_S: f64 = STRIDE as f64 * DT_S;
+/// Samples of the log from one step to the next.
+const SAMPLES_PER_STEP: usize = 5;
+const STEP_S: f64 = SAMPLES_PER_STEP as f64 * DT_S;
 /// Halvings in which the holds are balanced: to a millionth.
 const BISECTIONS: usize = 20;
 
@@ -83,7 +83,7 @@ impl<'a> Held<'a> {
             radius_m: parts.radius_m,
             most_nm,
             rims: PerWheel::from_fn(|w| Rim::new(s, machine, parts, w, late_s)),
-            pulled_nm: (0..s.len).step_by(STRIDE).map(pulled_nm).collect(),
+            pulled_nm: (0..s.len).step_by(SAMPLES_PER_STEP).map(pulled_nm).collect(),
             resisting: machine.wheels.rolling_resistance / machine.wheels.friction,
         })
     }
@@ -93,9 +93,9 @@ impl<'a> Held<'a> {
         let (s, none) = (self.s, PerWheel::splat(0.0));
         let (mut held, mut resting, mut swung_m) = (none, COMES_TO_REST, 0.0_f64);
         let mut holds = Holds { steps: vec![none], slips_m_s: vec![none] };
-        for (k, i) in (0..s.len).step_by(STRIDE).enumerate().skip(1) {
+        for (k, i) in (0..s.len).step_by(SAMPLES_PER_STEP).enumerate().skip(1) {
             let travels = s.throttle[i] != 0.0 || s.mean_wheel_speed_rad_s(i).abs() > TRAVELS_RAD_S;
-            resting = if travels { 0 } else { resting + STRIDE };
+            resting = if travels { 0 } else { resting + SAMPLES_PER_STEP };
             if resting <= COMES_TO_REST {
                 (held, swung_m) = (none, 0.0);
                 holds.push(none, none);
@@ -129,12 +129,12 @@ impl Holds {
 
     /// Shares at a sample of the log.
     pub(super) fn at(&self, sample: usize) -> PerWheel<f64> {
-        self.steps[(sample / STRIDE).min(self.steps.len() - 1)]
+        self.steps[(sample / SAMPLES_PER_STEP).min(self.steps.len() - 1)]
     }
 
     /// Speed at which each wheel's foot slips forward at a sample of the log, m/s.
     pub(in crate::diagnosis::generator) fn slips_m_s(&self, sample: usize) -> PerWheel<f64> {
-        self.slips_m_s[(sample / STRIDE).min(self.slips_m_s.len() - 1)]
+        self.slips_m_s[(sample / SAMPLES_PER_STEP).min(self.slips_m_s.len() - 1)]
     }
 }
 
@@ -146,14 +146,19 @@ impl Rim {
         let slips_m = machine.wheels.friction * parts.radius_m;
         let stroke_m = late(unflickered(&s.smooth_stroke_m[wheel]));
         let loads_n = s.cylinder_load_n[wheel].iter();
-        let steps = stroke_m.iter().zip(loads_n).step_by(STRIDE).map(|(stroke_m, load_n)| {
-            let pose = parts.linkage.at_stroke(*stroke_m);
-            let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
-            (turned_m, slips_m * normal_n(own_n, *load_n, &pose))
-        });
+        let steps =
+            stroke_m.iter().zip(loads_n).step_by(SAMPLES_PER_STEP).map(|(stroke_m, load_n)| {
+                let pose = parts.linkage.at_stroke(*stroke_m);
+                let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
+                (turned_m, slips_m * normal_n(own_n, *load_n, &pose))
+            });
         let (swing_m, grip_nm) = steps.unzip();
         let pushed_nm = late(pump_torque_nm(s, machine, wheel));
-        Self { swing_m, grip_nm, pushed_nm: pushed_nm.into_iter().step_by(STRIDE).collect() }
+        Self {
+            swing_m,
+            grip_nm,
+            pushed_nm: pushed_nm.into_iter().step_by(SAMPLES_PER_STEP).collect(),
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 use super::filter::{felt_rad, headings_felt, turned_rad};
 use super::motion::{Motion, lagged};
 use crate::diagnosis::gauge::rod_n;
+use crate::diagnosis::generator::SAMPLES_PER_RESIDUAL;
 use crate::diagnosis::generator::circuits::motor_nm;
 use crate::diagnosis::generator::loads::is_off_scale;
 use crate::diagnosis::generator::position_control::end_of;
@@ -14,12 +15,12 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 /// Time constant of the filter through which the ECU sees pressures, s: 0.94088 a tick (facts 3.2).
 pub(super) const PRESSURE_FILTER_S: f64 = 0.164;
 /// Samples of the log from one instant to the next: a machine that sways does so within seconds.
-const STRIDE: usize = 25;
+const SAMPLES_PER_INSTANT: usize = 25;
 /// Instants from one at which the stance is judged to the next, half a second: it changes slowly.
 pub(super) const STANDING: usize = 2;
 /// Time from one instant to the next, s.
 #[allow(clippy::cast_precision_loss)]
-pub(super) const STEP_S: f64 = STRIDE as f64 * DT_S;
+pub(super) const STEP_S: f64 = SAMPLES_PER_INSTANT as f64 * DT_S;
 /// Speed over which rolling resistance fades in, rad/s: 5 cm/s at the rim (assumed).
 const FADES_RAD_S: f64 = 0.07;
 /// Stroke by which arms press wheels that a brake holds against one another: no log says how hard.
@@ -45,8 +46,8 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
     let turned = turned_rad(&motion.turn_rad_s).map(|angle| late(&angle));
     let (doubt, held) = (doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
-    (STRIDE..s.len)
-        .step_by(STRIDE)
+    (SAMPLES_PER_INSTANT..s.len)
+        .step_by(SAMPLES_PER_INSTANT)
         .map(|i| Instant {
             sample: i,
             is_calm: motion.is_calm[i],
@@ -63,10 +64,11 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
         .collect()
 }
 
-/// Values at every so many `instants`, each held until the next, ten a second over a run of `len` samples.
+/// Values at every so many `instants`, each held until the next, one for each of a residual over a run of `len` samples.
 pub(super) fn held_between(values: &[f64], instants: usize, len: usize) -> Samples {
-    let stride = STRIDE * instants;
-    (0..len / 10).map(|k| values.get(k * 10 / stride).copied().unwrap_or(f64::NAN)).collect()
+    let stride = SAMPLES_PER_INSTANT * instants;
+    let held = |k| values.get(k * SAMPLES_PER_RESIDUAL / stride).copied().unwrap_or(f64::NAN);
+    (0..len / SAMPLES_PER_RESIDUAL).map(held).collect()
 }
 
 fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize) -> AtWheel {

@@ -26,9 +26,9 @@ pub struct Belief<'e> {
     pub from_s: f64,
 }
 
-/// A belief beside its base, as one run of a generator has it: `before` until `from_s`, `effects` after.
+/// Which effects hold when in one run: a belief beside its base, `before` until `from_s` and `effects` after.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Course<'e> {
+pub(super) struct EffectSchedule<'e> {
     /// Effects before [`Self::from_s`].
     pub(super) before: &'e Effects,
     /// From when on the others hold, s.
@@ -39,7 +39,7 @@ pub(super) struct Course<'e> {
     pub(super) since_s: f64,
 }
 
-impl<'e> From<&'e Effects> for Course<'e> {
+impl<'e> From<&'e Effects> for EffectSchedule<'e> {
     fn from(effects: &'e Effects) -> Self {
         Self { before: effects, from_s: 0.0, effects, since_s: 0.0 }
     }

@@ -31,7 +31,7 @@ use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::{Block, Effect, Scope};
 
-use super::belief::Course;
+use super::belief::EffectSchedule;
 use super::floor::Signal;
 use super::floors::BlockKey;
 use super::signals::{DT_S, Samples, Signals};
@@ -197,7 +197,7 @@ impl Generator {
         self.residuals_over(s, machine, effects.into())
     }
 
-    /// The same over a `course` of effects, as far as its own memory reaches back over the instant at which
+    /// The same over a `schedule` of effects, as far as its own memory reaches back over the instant at which
     /// they set in: a reading that jumps leaves an arm's stroke in doubt for seconds. What is before
     /// the instant is as if they had always been there.
     #[must_use]
@@ -205,9 +205,9 @@ impl Generator {
         self,
         s: &Signals,
         machine: &Machine,
-        course: Course<'_>,
+        schedule: EffectSchedule<'_>,
     ) -> Vec<Residual> {
-        let effects = course.effects;
+        let effects = schedule.effects;
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
             signal,
@@ -220,7 +220,7 @@ impl Generator {
         };
         match self {
             Self::ArmStroke(w) => {
-                vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, course, w))]
+                vec![one(Signal::Stroke, arms::stroke_error_m(s, machine, schedule, w))]
             }
             Self::ArmEcu(w) => {
                 let error = position_control::arm_opening_error(s, machine, effects, w);

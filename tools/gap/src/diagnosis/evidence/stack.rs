@@ -5,7 +5,7 @@ use core::ops::Range;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use crate::diagnosis::belief::{Base, Belief, Course};
+use crate::diagnosis::belief::{Base, Belief, EffectSchedule};
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::signals::Signals;
@@ -49,7 +49,7 @@ impl Stack {
         base: &Base,
     ) -> Self {
         let (effects, since_s) = (&base.effects, base.since_s);
-        let course = Course { since_s, ..effects.into() };
+        let schedule = EffectSchedule { since_s, ..effects.into() };
         let mut stack = Self {
             generator,
             values: Vec::new(),
@@ -61,7 +61,7 @@ impl Stack {
             mask: Vec::new(),
         };
         for (number, run) in runs.iter().enumerate() {
-            for residual in generator.residuals_over(run, machine, course) {
+            for residual in generator.residuals_over(run, machine, schedule) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
@@ -90,11 +90,11 @@ impl Stack {
         Belief { effects, from_s }: Belief<'_>,
     ) -> Vec<f64> {
         let Base { effects: before, since_s } = &self.base;
-        let course = Course { before, from_s, effects, since_s: *since_s };
+        let schedule = EffectSchedule { before, from_s, effects, since_s: *since_s };
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
-            for residual in self.generator.residuals_over(run, machine, course) {
+            for residual in self.generator.residuals_over(run, machine, schedule) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {

@@ -7,7 +7,7 @@ use xt28_sim::effects::{
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
-use crate::diagnosis::belief::Course;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::gauge::Gauge;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -69,16 +69,17 @@ impl<'a> ArmDrive<'a> {
         }
     }
 
-    /// The same over a `course` of effects. Sensors are those of before until the others set in: a reading
+    /// The same over a `schedule` of effects. Sensors are those of before until the others set in: a reading
     /// that jumps is followed. Oil begins anew where the arm becomes another, as it then is what it was: a
     /// leak that had always been there would have emptied it. Not where a sensor jumps, as no load is known
     /// while the ECU's filter still follows.
-    pub(super) fn over(mut self, course: Course<'_>) -> Self {
+    pub(super) fn over(mut self, schedule: EffectSchedule<'_>) -> Self {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
-        let (since, from) = (sample(course.since_s), sample(course.from_s));
+        let (since, from) = (sample(schedule.since_s), sample(schedule.from_s));
         let sound = Effects::default();
-        let [was, is] = [course.before, course.effects].map(|effects| effects.wheels[self.wheel]);
+        let [was, is] =
+            [schedule.before, schedule.effects].map(|effects| effects.wheels[self.wheel]);
         // Before a base whose sensors jumped one does not look, but what the oil holds is from there.
         let before =
             if since > from && was == is { (since, sound.wheels[self.wheel]) } else { (from, was) };
@@ -86,15 +87,17 @@ impl<'a> ArmDrive<'a> {
         let becomes =
             |at: usize, [was, is]: [&Effects; 2]| is_another_arm(was, is, self.wheel).then_some(at);
         self.anew = [
-            becomes(since, [&sound, course.before]),
-            becomes(from, [course.before, course.effects]),
+            becomes(since, [&sound, schedule.before]),
+            becomes(from, [schedule.before, schedule.effects]),
         ];
         let plays = |at: usize, [was, is]: [&Effects; 2]| {
             let [was, is] = [was, is].map(|effects| effects.arms[self.wheel].hysteresis);
             (at > 0 && was != is).then_some(at)
         };
-        self.plays =
-            [plays(since, [&sound, course.before]), plays(from, [course.before, course.effects])];
+        self.plays = [
+            plays(since, [&sound, schedule.before]),
+            plays(from, [schedule.before, schedule.effects]),
+        ];
         self
     }
 
@@ -298,8 +301,8 @@ mod tests {
             seen_n = KEPT * seen_n + (1.0 - KEPT) * reading_n;
             s.cylinder_load_n[w][i] = seen_n;
         }
-        let course = Course { before: &off, from_s: 0.0, effects: &off, since_s: 10.0 };
-        let drive = ArmDrive::new(&s, &machine, &off, w).over(course);
+        let schedule = EffectSchedule { before: &off, from_s: 0.0, effects: &off, since_s: 10.0 };
+        let drive = ArmDrive::new(&s, &machine, &off, w).over(schedule);
         let (errors_m, _) = drive.stroke_errors_m(&[], None);
         let largest_m = errors_m[1000..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
         assert!(largest_m < 3.0e-4, "{largest_m}");

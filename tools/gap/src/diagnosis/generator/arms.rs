@@ -7,7 +7,7 @@ use super::arm_drive::ArmDrive;
 use super::loads::KEPT;
 use super::spool::square;
 use super::{pump, spool};
-use crate::diagnosis::belief::Course;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::signals::{Samples, Signals};
 
 /// Stroke rate over which friction changes its sign, m/s: what 0.2 s of a reading in whole
@@ -23,11 +23,11 @@ const SLIDING_M_S: f64 = 0.004;
 pub(super) fn stroke_error_m(
     signals: &Signals,
     machine: &Machine,
-    course: Course<'_>,
+    schedule: EffectSchedule<'_>,
     wheel: Wheel,
 ) -> Samples {
-    let effects = course.effects;
-    let drive = ArmDrive::new(signals, machine, effects, wheel).over(course);
+    let effects = schedule.effects;
+    let drive = ArmDrive::new(signals, machine, effects, wheel).over(schedule);
     // No log says what else the pump has to give. The arm does.
     let shares = pump::flow_shares(signals, machine, effects);
     let hysteresis = effects.arms[wheel].hysteresis;

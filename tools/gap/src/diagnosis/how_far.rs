@@ -8,10 +8,10 @@
 
 mod answer;
 mod black_box;
-mod course;
 mod folds;
 mod free_step;
 mod law;
+mod machine_sample;
 mod measured;
 mod one_step;
 mod reader;
@@ -26,11 +26,11 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{Entry, Overlay, Scope};
 
-pub use course::{Horizon, Quantity};
+pub use machine_sample::{Horizon, Quantity};
 pub use refit::Refit;
 
 use self::squares::Squares;
-use self::twin::{Course, Stretch};
+use self::twin::{Forecast, PreparedRun};
 use super::inquiry::Inquiry;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
@@ -40,7 +40,7 @@ use crate::{Channel, GapError, Series};
 pub struct HowFar {
     machine: Machine,
     believed: Effects,
-    courses: Vec<Course>,
+    runs: Vec<PreparedRun>,
     fit: Vec<bool>,
     before: Gaps,
 }
@@ -68,12 +68,12 @@ impl HowFar {
     /// # Errors
     /// [`GapError::Command`] for a command that our bus cannot say.
     pub fn new(inquiry: &Inquiry) -> Result<Self, GapError> {
-        let courses: Result<Vec<Course>, GapError> =
-            inquiry.runs.iter().map(|run| Course::new(run, &inquiry.machine)).collect();
+        let runs: Result<Vec<PreparedRun>, GapError> =
+            inquiry.runs.iter().map(|run| PreparedRun::new(run, &inquiry.machine)).collect();
         let mut how_far = Self {
             machine: inquiry.machine.clone(),
             believed: inquiry.believed.clone(),
-            courses: courses?,
+            runs: runs?,
             fit: inquiry.runs.iter().map(|run| run.fit).collect(),
             before: Gaps::default(),
         };
@@ -84,8 +84,8 @@ impl HowFar {
     /// Names of the runs that were not fitted, which a shrink is judged on; none where all were.
     #[must_use]
     pub fn held_out_runs(&self) -> Vec<String> {
-        let each = self.courses.iter().zip(&self.fit).filter(|(_, fit)| !**fit);
-        each.map(|(course, _)| course.signals.name.clone()).collect()
+        let each = self.runs.iter().zip(&self.fit).filter(|(_, fit)| !**fit);
+        each.map(|(prepared, _)| prepared.signals.name.clone()).collect()
     }
 
     /// How far `effects` shrink the gap of what is believed.
@@ -121,10 +121,10 @@ impl HowFar {
     /// For a run that the inquiry does not have.
     #[must_use]
     pub fn traces(&self, run: usize, causes: &[Cause]) -> Traces {
-        let course = &self.courses[run];
+        let prepared = &self.runs[run];
         let (both, since_s) = ([&self.believed, &self.with(causes)], since_s(causes));
-        let foretold = course.foretell_since(&self.machine, both, since_s, Horizon::Run);
-        Traces { run: course.signals.name.clone(), channels: traces::traces(course, &foretold) }
+        let foretold = prepared.foretell_since(&self.machine, both, since_s, Horizon::Run);
+        Traces { run: prepared.signals.name.clone(), channels: traces::traces(prepared, &foretold) }
     }
 
     /// What is believed, with the parameters of `causes`.
@@ -153,10 +153,10 @@ impl HowFar {
     }
 
     fn gaps(&self, effects: &Effects, since_s: f64) -> Gaps {
-        let judged: Vec<&Course> =
-            (0..self.courses.len()).filter(|&k| self.judges(k)).map(|k| &self.courses[k]).collect();
-        let ahead = |course: &&Course| {
-            let of = |effects| one_step::ahead(&course.signals, &self.machine, effects);
+        let judged: Vec<&PreparedRun> =
+            (0..self.runs.len()).filter(|&k| self.judges(k)).map(|k| &self.runs[k]).collect();
+        let ahead = |prepared: &&PreparedRun| {
+            let of = |effects| one_step::ahead(&prepared.signals, &self.machine, effects);
             let after = of(effects);
             if since_s > 0.0 { one_step::splice(of(&self.believed), after, since_s) } else { after }
         };
@@ -178,24 +178,24 @@ impl HowFar {
     ) -> Vec<Squares> {
         let both = [&self.believed, effects];
         let foretell =
-            |course: &Course| course.foretell_since(&self.machine, both, since_s, horizon);
+            |prepared: &PreparedRun| prepared.foretell_since(&self.machine, both, since_s, horizon);
         self.squares_of(&foretell, horizon, of)
     }
 
     /// Squared errors of what is foretold of the runs that `of` names, in order.
     fn squares_of(
         &self,
-        foretell: &(dyn Fn(&Course) -> Vec<Stretch> + Sync),
+        foretell: &(dyn Fn(&PreparedRun) -> Vec<Forecast> + Sync),
         horizon: Horizon,
         of: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Squares> {
-        let blocks = |(k, course): (usize, &Course)| {
-            let foretold = if of(k) { foretell(course) } else { Vec::new() };
-            let stretches = foretold.iter();
-            let blocks = stretches.flat_map(|s| squares::of_stretch(&course.measured, s, horizon));
+        let blocks = |(k, prepared): (usize, &PreparedRun)| {
+            let forecasts = if of(k) { foretell(prepared) } else { Vec::new() };
+            let blocks = |forecast| squares::of_forecast(&prepared.measured, forecast, horizon);
+            let blocks = forecasts.iter().flat_map(blocks);
             blocks.map(|block| Squares { run: k, ..block }).collect::<Vec<_>>()
         };
-        self.courses.par_iter().enumerate().flat_map_iter(blocks).collect()
+        self.runs.par_iter().enumerate().flat_map_iter(blocks).collect()
     }
 }
 

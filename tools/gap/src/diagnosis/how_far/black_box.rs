@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use xt28_machine::Wheel;
 use xt28_sim::Held;
 
-use super::course::{Horizon, Quantity, Row, TICKS_PER_SAMPLE, WIDTH, floors};
 use super::folds::{self, Fold, RIDGES};
 use super::law::{Known, Law, Normal, scales};
+use super::machine_sample::{Horizon, MachineSample, Quantity, TICKS_PER_SAMPLE, WIDTH, floors};
 use super::squares::{self, BLOCK, Squares};
-use super::twin::{Course, Stretch};
+use super::twin::{Forecast, PreparedRun};
 use super::{Gaps, HowFar};
 use crate::diagnosis::signals::Signals;
 use crate::diagnosis::verdict::Shrink;
@@ -30,7 +30,7 @@ const REACH: f64 = 2.0;
 struct Model {
     law: Law,
     known: Known,
-    reach: Row,
+    reach: MachineSample,
 }
 
 /// A model with the scales of its inputs; without one, the simulator stays alone.
@@ -39,7 +39,7 @@ struct Learnt {
     model: Option<Model>,
 }
 
-/// One stretch under what is believed, with what goes into a model of its residual.
+/// One forecast under what is believed, with what goes into a model of its residual.
 struct Lesson {
     run: usize,
     /// Sample of the run that it begins with.
@@ -47,7 +47,7 @@ struct Lesson {
     /// The machine less the simulator, floors; none where nothing is measured.
     error: Vec<[Option<f64>; WIDTH]>,
     /// The same; a number that is not known keeps its last value.
-    residual: Vec<Row>,
+    residual: Vec<MachineSample>,
     /// What the simulator shows and by how much that changes, and the commands; one a sample.
     beside: Vec<Vec<f64>>,
 }
@@ -58,10 +58,10 @@ impl HowFar {
     pub fn black_box(&self) -> Shrink {
         let left = |horizon: Horizon| -> Vec<Squares> {
             let lessons: Vec<Lesson> = self
-                .courses
+                .runs
                 .par_iter()
                 .enumerate()
-                .flat_map_iter(|(k, course)| lessons(k, course, self, horizon))
+                .flat_map_iter(|(k, prepared)| lessons(k, prepared, self, horizon))
                 .collect();
             let fitted: Vec<&Lesson> = lessons.iter().filter(|l| self.fits(l.run)).collect();
             let learnt = Learnt::of(&fitted);
@@ -73,20 +73,20 @@ impl HowFar {
     }
 }
 
-fn lessons(run: usize, course: &Course, far: &HowFar, horizon: Horizon) -> Vec<Lesson> {
+fn lessons(run: usize, prepared: &PreparedRun, far: &HowFar, horizon: Horizon) -> Vec<Lesson> {
     let floors = floors(horizon);
-    let commands = commands(&course.signals);
-    let stretches = course.foretell(&far.machine, &far.believed, horizon, Held::default());
-    let lesson = |stretch: Stretch| {
+    let commands = commands(&prepared.signals);
+    let forecasts = prepared.foretell(&far.machine, &far.believed, horizon, Held::default());
+    let lesson = |forecast: Forecast| {
         let (mut error, mut beside) = (Vec::new(), Vec::new());
-        for (k, ours) in stretch.rows.iter().enumerate() {
-            let at = stretch.from + k;
+        for (k, ours) in forecast.samples.iter().enumerate() {
+            let at = forecast.from + k;
             let of = |c: usize| {
-                let measured = course.measured[at][c];
+                let measured = prepared.measured[at][c];
                 measured.is_finite().then_some((measured - ours[c]) / floors[c])
             };
             error.push(core::array::from_fn(of));
-            let before = &stretch.rows[k.saturating_sub(1)];
+            let before = &forecast.samples[k.saturating_sub(1)];
             let (now, past) = (commands[at], commands[at.saturating_sub(1)]);
             let shown = (0..WIDTH).filter(|c| !Quantity::Position.columns().contains(c));
             let state = shown.clone().map(|c| ours[c] / floors[c]);
@@ -94,9 +94,9 @@ fn lessons(run: usize, course: &Course, far: &HowFar, horizon: Horizon) -> Vec<L
             let all = state.chain(change).chain(now).chain(past).chain([1.0]);
             beside.push(all.map(|x| if x.is_finite() { x } else { 0.0 }).collect());
         }
-        Lesson::new(run, stretch.from, error, beside)
+        Lesson::new(run, forecast.from, error, beside)
     };
-    stretches.into_iter().map(lesson).collect()
+    forecasts.into_iter().map(lesson).collect()
 }
 
 impl Lesson {
@@ -118,7 +118,7 @@ impl Lesson {
     }
 
     /// Inputs of sample `k` with the residual before it, scaled.
-    fn inputs(&self, residual: &Row, k: usize, scale: &DVector<f64>) -> DVector<f64> {
+    fn inputs(&self, residual: &MachineSample, k: usize, scale: &DVector<f64>) -> DVector<f64> {
         let all = residual.iter().chain(&self.beside[k]).zip(scale.iter());
         DVector::from_vec(all.map(|(x, scale)| x / scale).collect())
     }
@@ -137,7 +137,7 @@ impl Lesson {
             for &k in samples.iter().filter(|&&k| is_judged(self.from + k)) {
                 for (q, quantity) in Quantity::ALL.into_iter().enumerate() {
                     for c in quantity.columns() {
-                        let ours = foretold.as_ref().map_or(0.0, |rows| rows[k][c]);
+                        let ours = foretold.as_ref().map_or(0.0, |residuals| residuals[k][c]);
                         if let Some(error) = self.error[k][c] {
                             squares.add(q, error - ours);
                         }
@@ -154,7 +154,7 @@ impl Lesson {
 struct Fit {
     inputs: Vec<DVector<f64>>,
     normal: Normal,
-    reach: Row,
+    reach: MachineSample,
 }
 
 impl Fit {
@@ -195,9 +195,9 @@ impl Fit {
 
 impl Model {
     /// The residual along a lesson, from none at its start.
-    fn roll_out(&self, lesson: &Lesson, scale: &DVector<f64>) -> Vec<Row> {
+    fn roll_out(&self, lesson: &Lesson, scale: &DVector<f64>) -> Vec<MachineSample> {
         let mut residual = [0.0; WIDTH];
-        let mut rows = Vec::with_capacity(lesson.beside.len());
+        let mut residuals = Vec::with_capacity(lesson.beside.len());
         for k in 0..lesson.beside.len() {
             if k > 0 {
                 let inputs = lesson.inputs(&residual, k, scale);
@@ -207,9 +207,9 @@ impl Model {
                     residual[c] = next.clamp(-self.reach[c], self.reach[c]);
                 }
             }
-            rows.push(residual);
+            residuals.push(residual);
         }
-        rows
+        residuals
     }
 }
 

@@ -10,11 +10,11 @@ use rayon::prelude::*;
 
 use super::HowFar;
 use super::black_box::commands;
-use super::course::{Horizon, Quantity, WIDTH, floors};
 use super::folds::{self, Fold, RIDGES};
 use super::law::{Known, Law, Normal, scales};
+use super::machine_sample::{Horizon, Quantity, WIDTH, floors};
 use super::one_step::{self, Ahead};
-use super::twin::Course;
+use super::twin::PreparedRun;
 
 /// Errors and inputs of one run, sample by sample.
 struct Lesson {
@@ -41,11 +41,11 @@ struct Model {
 impl HowFar {
     /// What a free model leaves of the blocks' errors on the judged runs.
     pub(super) fn free_steps(&self) -> Vec<Ahead> {
-        let of = |(run, course): (usize, &Course)| {
-            let ahead = one_step::ahead(&course.signals, &self.machine, &self.believed);
-            Lesson { run, ahead, inputs: inputs(course) }
+        let of = |(run, prepared): (usize, &PreparedRun)| {
+            let ahead = one_step::ahead(&prepared.signals, &self.machine, &self.believed);
+            Lesson { run, ahead, inputs: inputs(prepared) }
         };
-        let lessons: Vec<Lesson> = self.courses.par_iter().enumerate().map(of).collect();
+        let lessons: Vec<Lesson> = self.runs.par_iter().enumerate().map(of).collect();
         left(lessons, |run| self.fits(run), |run| self.judges(run))
     }
 }
@@ -176,11 +176,11 @@ fn normal(
 }
 
 /// What is measured, how that changes and what is commanded, sample by sample, in floors.
-fn inputs(course: &Course) -> Vec<DVector<f64>> {
+fn inputs(prepared: &PreparedRun) -> Vec<DVector<f64>> {
     let floors = floors(Horizon::FiveSeconds);
-    let commands = commands(&course.signals);
+    let commands = commands(&prepared.signals);
     let at = |k: usize| {
-        let (now, before) = (&course.measured[k], &course.measured[k.saturating_sub(1)]);
+        let (now, before) = (&prepared.measured[k], &prepared.measured[k.saturating_sub(1)]);
         let shown = (0..WIDTH).filter(|c| !Quantity::Position.columns().contains(c));
         let state = shown.clone().map(|c| now[c] / floors[c]);
         let change = shown.map(|c| (now[c] - before[c]) / floors[c]);
@@ -188,7 +188,7 @@ fn inputs(course: &Course) -> Vec<DVector<f64>> {
         let all = state.chain(change).chain(commands[k]).chain(past).chain([1.0]);
         DVector::from_vec(all.map(|x| if x.is_finite() { x } else { 0.0 }).collect())
     };
-    (0..course.measured.len()).map(at).collect()
+    (0..prepared.measured.len()).map(at).collect()
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use xt28_dbc::{CanId, Frame, XT28_DBC};
 use xt28_ecus::pins;
 use xt28_machine::Wheel;
 
-use super::course::{Quantity, Row, WIDTH};
+use super::machine_sample::{MachineSample, Quantity, WIDTH};
 use crate::{Channel, Decoder, GapError, Mapping, SteerSide};
 
 /// Keeps the newest frame of each kind, and reads them when a sample is due: most are never read.
@@ -41,8 +41,8 @@ impl Reader {
     }
 
     /// What the ECUs said last; no position.
-    pub(super) fn row(&self, decoder: &Decoder) -> Row {
-        let mut row = [f64::NAN; WIDTH];
+    pub(super) fn sample(&self, decoder: &Decoder) -> MachineSample {
+        let mut sample = [f64::NAN; WIDTH];
         let (mut arm_ma, mut steer_ma) = ([[f64::NAN; 6]; 2], [f64::NAN; 4]);
         for frame in self.newest.iter().filter_map(|(_, frame)| frame.as_ref()) {
             let Some(tap) = decoder.tap(frame.id()) else { continue };
@@ -54,20 +54,20 @@ impl Reader {
                     Channel::SteerCurrent(side) => steer_ma[side as usize] = value * 1e3,
                     channel => {
                         if let Some(column) = Quantity::of(channel) {
-                            row[column] = value;
+                            sample[column] = value;
                         }
                     }
                 }
             }
         }
         for k in 0..Wheel::ALL.len() {
-            row[Quantity::Opening.columns().start + k] =
+            sample[Quantity::Opening.columns().start + k] =
                 pins::valve_opening(arm_ma[0][k], arm_ma[1][k]);
         }
         let [front_a, front_b, rear_a, rear_b] = SteerSide::ALL.map(|side| steer_ma[side as usize]);
         let steer = [pins::steer_opening(front_a, front_b), pins::steer_opening(rear_a, rear_b)];
-        row[Quantity::SteerOpening.columns()].copy_from_slice(&steer);
-        row
+        sample[Quantity::SteerOpening.columns()].copy_from_slice(&steer);
+        sample
     }
 }
 

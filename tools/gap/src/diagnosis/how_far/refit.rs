@@ -15,9 +15,9 @@ use xt28_machine::Machine;
 use xt28_sim::Effects;
 use xt28_sim::effects::{Block, LOCK_STIFFNESS, Parameter, Scope};
 
-use super::course::{Horizon, WIDTH, floors};
+use super::machine_sample::{Horizon, WIDTH, floors};
 use super::squares::{self, BLOCK, LOST};
-use super::twin::Course;
+use super::twin::PreparedRun;
 use super::{HowFar, since_s};
 use crate::diagnosis::knob::{Knob, TOLERANCES};
 use crate::diagnosis::verdict::{Cause, Estimate, Shrink};
@@ -126,15 +126,15 @@ impl HowFar {
 
     /// Weighted errors of the fit runs, made robust; one number a sample and channel.
     fn errors(&self, machine: &Machine, effects: &Effects, since_s: f64) -> Vec<f64> {
-        let runs: Vec<&Course> = self
-            .courses
+        let runs: Vec<&PreparedRun> = self
+            .runs
             .iter()
             .enumerate()
             .filter(|(k, _)| self.fits(*k))
-            .map(|(_, course)| course)
+            .map(|(_, run)| run)
             .collect();
         let both = [&self.believed, effects];
-        runs.par_iter().flat_map_iter(|course| errors(course, machine, both, since_s)).collect()
+        runs.par_iter().flat_map_iter(|run| errors(run, machine, both, since_s)).collect()
     }
 
     /// Slopes of the errors by each neighbour, a tolerance each.
@@ -286,13 +286,13 @@ fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
     (at + step * turn.parameter.tolerance).clamp(low, high)
 }
 
-/// Errors of one run, each stretch filled up with zeros to a whole block.
-fn errors(course: &Course, machine: &Machine, both: [&Effects; 2], since_s: f64) -> Vec<f64> {
+/// Errors of one run, each forecast filled up with zeros to a whole block.
+fn errors(run: &PreparedRun, machine: &Machine, both: [&Effects; 2], since_s: f64) -> Vec<f64> {
     let floors = floors(Horizon::FiveSeconds);
-    let foretold = course.foretell_since(machine, both, since_s, Horizon::FiveSeconds);
+    let foretold = run.foretell_since(machine, both, since_s, Horizon::FiveSeconds);
     let mut errors = Vec::new();
-    for stretch in &foretold {
-        for (measured, ours) in course.measured[stretch.from..].iter().zip(&stretch.rows) {
+    for forecast in &foretold {
+        for (measured, ours) in run.measured[forecast.from..].iter().zip(&forecast.samples) {
             for c in 0..WIDTH {
                 let error = match (ours[c].is_finite(), measured[c].is_finite()) {
                     (true, true) => robust((ours[c] - measured[c]) / floors[c]),

@@ -5,9 +5,9 @@ use xt28_sim::Held;
 use xt28_sim::effects::Block;
 
 use super::HowFar;
-use super::course::{Horizon, Quantity};
+use super::machine_sample::{Horizon, Quantity};
 use super::squares;
-use super::twin::Course;
+use super::twin::PreparedRun;
 
 /// Blocks whose output can be taken from the log, in the order of the bits of a combination.
 const PLAYERS: [Block; 3] = [Block::Arms, Block::Steering, Block::Drive];
@@ -29,7 +29,7 @@ impl HowFar {
                 let held = Held { arms: has(0), joints: has(1), drive: has(2) };
                 let horizon = Horizon::FiveSeconds;
                 let foretell =
-                    |c: &Course| c.foretell(&self.machine, &self.believed, horizon, held);
+                    |run: &PreparedRun| run.foretell(&self.machine, &self.believed, horizon, held);
                 let mut blocks = self.squares_of(&foretell, horizon, |_| true);
                 if held.drive {
                     // Pressures are the drive's own too, and nothing of the simulator feels them.

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::course::{Horizon, Quantity, Row, floors};
-use super::twin::Stretch;
+use super::machine_sample::{Horizon, MachineSample, Quantity, floors};
+use super::twin::Forecast;
 
 /// Samples of a block: 5 s. Errors of one step and of 5 s that are further apart are taken for independent.
 pub(super) const BLOCK: usize = 50;
@@ -56,13 +56,18 @@ impl Squares {
     }
 }
 
-/// The blocks of one stretch.
-pub(super) fn of_stretch(measured: &[Row], stretch: &Stretch, horizon: Horizon) -> Vec<Squares> {
+/// The blocks of one forecast.
+pub(super) fn of_forecast(
+    measured: &[MachineSample],
+    forecast: &Forecast,
+    horizon: Horizon,
+) -> Vec<Squares> {
     let floors = floors(horizon);
-    let pairs: Vec<(&Row, &Row)> = measured[stretch.from..].iter().zip(&stretch.rows).collect();
-    let block = |rows: &[(&Row, &Row)]| {
+    let pairs: Vec<(&MachineSample, &MachineSample)> =
+        measured[forecast.from..].iter().zip(&forecast.samples).collect();
+    let block = |samples: &[(&MachineSample, &MachineSample)]| {
         let mut squares = Squares::new(Quantity::ALL.len());
-        for (measured, ours) in rows {
+        for (measured, ours) in samples {
             for (k, quantity) in Quantity::ALL.into_iter().enumerate() {
                 for c in quantity.columns().filter(|&c| measured[c].is_finite()) {
                     squares.add(k, (ours[c] - measured[c]) / floors[c]);

@@ -2,8 +2,8 @@
 
 use xt28_machine::Wheel;
 
-use super::course::{Quantity, Row, TICKS_PER_SAMPLE};
-use super::twin::{Course, Stretch};
+use super::machine_sample::{MachineSample, Quantity, TICKS_PER_SAMPLE};
+use super::twin::{Forecast, PreparedRun};
 use crate::diagnosis::signals::DT_S;
 use crate::{Channel, PumpSide, Series};
 
@@ -24,16 +24,20 @@ fn channels() -> impl Iterator<Item = (Channel, usize)> {
 
 /// Channel, measured, foretold.
 #[allow(clippy::cast_precision_loss)]
-pub(super) fn traces(course: &Course, foretold: &[Stretch]) -> Vec<(Channel, Series, Series)> {
+pub(super) fn traces(
+    prepared: &PreparedRun,
+    foretold: &[Forecast],
+) -> Vec<(Channel, Series, Series)> {
     let at_s = |k: usize| (k * TICKS_PER_SAMPLE) as f64 * DT_S;
-    let series = |rows: &mut dyn Iterator<Item = (usize, &Row)>, column: usize| -> Series {
-        let known = rows.filter(|(_, row)| row[column].is_finite());
-        known.map(|(k, row)| (at_s(k), row[column])).collect()
-    };
+    let series =
+        |samples: &mut dyn Iterator<Item = (usize, &MachineSample)>, column: usize| -> Series {
+            let known = samples.filter(|(_, sample)| sample[column].is_finite());
+            known.map(|(k, sample)| (at_s(k), sample[column])).collect()
+        };
     let one = |(channel, column): (Channel, usize)| {
-        let measured = series(&mut course.measured.iter().enumerate(), column);
-        let ours = foretold.iter().flat_map(|stretch| {
-            stretch.rows.iter().enumerate().map(|(k, row)| (stretch.from + k, row))
+        let measured = series(&mut prepared.measured.iter().enumerate(), column);
+        let ours = foretold.iter().flat_map(|forecast| {
+            forecast.samples.iter().enumerate().map(|(k, sample)| (forecast.from + k, sample))
         });
         (channel, measured, series(&mut { ours }, column))
     };

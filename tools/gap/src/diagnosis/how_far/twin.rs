@@ -6,7 +6,7 @@ use xt28_machine::{Machine, SimTime};
 use xt28_sim::effects::BusEffects;
 use xt28_sim::{Effects, Held, Solver};
 
-use super::course::{Horizon, Quantity, Row, TICKS_PER_SAMPLE, fix, measured};
+use super::machine_sample::{Horizon, MachineSample, Quantity, TICKS_PER_SAMPLE, fix, measured};
 use super::measured::Measured;
 use super::reader::Reader;
 use crate::commands::{Command, Speaker, commands};
@@ -26,9 +26,9 @@ const PHASE_S: f64 = 0.001;
 
 /// A run, ready to be foretold again and again.
 #[derive(Clone, Debug)]
-pub(super) struct Course {
+pub(super) struct PreparedRun {
     pub(super) signals: Signals,
-    pub(super) measured: Vec<Row>,
+    pub(super) measured: Vec<MachineSample>,
     /// Commands as our own frames, with the tick that hears them.
     frames: Vec<(usize, Frame)>,
     decoder: Decoder,
@@ -36,16 +36,16 @@ pub(super) struct Course {
 
 /// What the machine is foretold to show, from one measured state on.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
-    /// Sample of the run that its first row stands beside.
+pub(super) struct Forecast {
+    /// Sample of the run that its first sample stands beside.
     pub(super) from: usize,
-    pub(super) rows: Vec<Row>,
+    pub(super) samples: Vec<MachineSample>,
 }
 
 /// The machine on its way along a run.
 #[derive(Clone)]
 struct Bench<'a> {
-    course: &'a Course,
+    run: &'a PreparedRun,
     emulator: Emulator,
     reader: Reader,
     outbox: Outbox,
@@ -55,7 +55,7 @@ struct Bench<'a> {
     gnss_late_s: f64,
 }
 
-impl Course {
+impl PreparedRun {
     /// # Errors
     /// [`GapError::Command`] for a command that our bus cannot say.
     pub(super) fn new(run: &FieldRun, machine: &Machine) -> Result<Self, GapError> {
@@ -96,7 +96,7 @@ impl Course {
 
     /// The machine with `before` until `since_s` in the run and with `effects` from then on.
     ///
-    /// A stretch that begins later has them from its start. One that begins earlier goes over from one
+    /// A forecast that begins later has them from its start. One that begins earlier goes over from one
     /// machine to the other, whose way is shifted to where the first one is: what else the second had
     /// become by then it keeps, which is little where what it does passes within seconds.
     pub(super) fn foretell_since(
@@ -105,7 +105,7 @@ impl Course {
         [before, effects]: [&Effects; 2],
         since_s: f64,
         horizon: Horizon,
-    ) -> Vec<Stretch> {
+    ) -> Vec<Forecast> {
         let foretell = |effects| self.foretell(machine, effects, horizon, Held::default());
         if since_s <= 0.0 {
             return foretell(effects);
@@ -123,7 +123,7 @@ impl Course {
         effects: &Effects,
         horizon: Horizon,
         held: Held,
-    ) -> Vec<Stretch> {
+    ) -> Vec<Forecast> {
         let state = Measured::new(&self.signals, machine, effects);
         let mut bench = Bench::new(self, machine, effects, &state);
         // Before the first tick, or the ECUs would hear of an engine at rest.
@@ -134,22 +134,27 @@ impl Course {
         if horizon == Horizon::Run {
             return vec![bench.set_out(0, self.signals.len, &state, held)];
         }
-        let mut stretches = Vec::new();
+        let mut forecasts = Vec::new();
         let mut from = 0;
         while from + SHORTEST <= self.signals.len {
             let end = (from + SEGMENT).min(self.signals.len);
-            stretches.push(bench.clone().set_out(from, end, &state, held));
+            forecasts.push(bench.clone().set_out(from, end, &state, held));
             for i in from..end {
                 bench.track(SETTLE + i, &state, i);
             }
             from = end;
         }
-        stretches
+        forecasts
     }
 }
 
 impl<'a> Bench<'a> {
-    fn new(course: &'a Course, machine: &Machine, effects: &Effects, state: &Measured<'_>) -> Self {
+    fn new(
+        run: &'a PreparedRun,
+        machine: &Machine,
+        effects: &Effects,
+        state: &Measured<'_>,
+    ) -> Self {
         // Commands come when they came in the log: what the bus did to them is in it already.
         let effects = Effects { bus: BusEffects::default(), ..effects.clone() };
         let gnss_late_s = effects.sensors.gnss_latency.delay_s;
@@ -157,15 +162,15 @@ impl<'a> Bench<'a> {
             effects,
             solver: Solver::Reduced,
             stroke_m: state.at(0).stroke_m,
-            ..EmulatorConfig::new(machine.clone(), course.signals.terrain.clone(), None)
+            ..EmulatorConfig::new(machine.clone(), run.signals.terrain.clone(), None)
         };
         Self {
-            course,
+            run,
             emulator: Emulator::set_down(&config),
             reader: Reader::new(),
             outbox: Outbox::with_capacity(64),
             next_frame: 0,
-            antenna_m: Vec::with_capacity(course.signals.len),
+            antenna_m: Vec::with_capacity(run.signals.len),
             gnss_late_s,
         }
     }
@@ -179,16 +184,16 @@ impl<'a> Bench<'a> {
             let [east, north, _] = state.antenna_position_m;
             self.antenna_m.push([east, north]);
         }
-        self.reader.hear(&self.course.decoder, self.outbox.frames());
+        self.reader.hear(&self.run.decoder, self.outbox.frames());
         self.outbox.clear();
     }
 
     /// From where the log has the machine at its tick `from` on by itself until `end`.
-    fn set_out(mut self, from: usize, end: usize, state: &Measured<'_>, held: Held) -> Stretch {
+    fn set_out(mut self, from: usize, end: usize, state: &Measured<'_>, held: Held) -> Forecast {
         let start = state.at(from);
         self.emulator.place(&start);
         let first = from.div_ceil(TICKS_PER_SAMPLE);
-        let mut rows = Vec::with_capacity((end - from).div_ceil(TICKS_PER_SAMPLE));
+        let mut samples = Vec::with_capacity((end - from).div_ceil(TICKS_PER_SAMPLE));
         for i in from..end {
             let now = self.hear(SETTLE + i);
             let [east, north, _] = self.emulator.truth().antenna_position_m;
@@ -198,23 +203,23 @@ impl<'a> Bench<'a> {
             } else {
                 self.emulator.tick_held(now, &state.at(i), held, &mut self.outbox);
             }
-            self.reader.hear(&self.course.decoder, self.outbox.frames());
+            self.reader.hear(&self.run.decoder, self.outbox.frames());
             self.outbox.clear();
             if i % TICKS_PER_SAMPLE == 0 {
-                let mut row = self.reader.row(&self.course.decoder);
+                let mut sample = self.reader.sample(&self.run.decoder);
                 if let Some(place) = self.fix(i) {
-                    row[Quantity::Position.columns()].copy_from_slice(&place);
+                    sample[Quantity::Position.columns()].copy_from_slice(&place);
                 }
-                rows.push(row);
+                samples.push(sample);
             }
         }
-        Stretch { from: first, rows }
+        Forecast { from: first, samples }
     }
 
     /// What the receiver said in the fix that is in force at tick `i`.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn fix(&self, i: usize) -> Option<[f64; 2]> {
-        let [at_s, ..] = fix(&self.course.signals, i)?;
+        let [at_s, ..] = fix(&self.run.signals, i)?;
         let last = (self.antenna_m.len() - 1) as f64;
         let place = ((at_s - self.gnss_late_s) / DT_S).clamp(0.0, last);
         let (k, share) = (place as usize, place.fract());
@@ -226,7 +231,7 @@ impl<'a> Bench<'a> {
     fn hear(&mut self, tick: usize) -> SimTime {
         let now = SimTime::from_nanos(tick as u64 * TICK.as_nanos() as u64);
         while let Some((_, frame)) =
-            self.course.frames.get(self.next_frame).filter(|(at, _)| *at <= tick)
+            self.run.frames.get(self.next_frame).filter(|(at, _)| *at <= tick)
         {
             self.emulator.on_frame(now, frame);
             self.next_frame += 1;
@@ -236,17 +241,17 @@ impl<'a> Bench<'a> {
 }
 
 /// `before` up to sample `since` of the run, `after` from there on, its way shifted to go on from there.
-fn splice(mut before: Stretch, after: &Stretch, since: usize) -> Stretch {
-    let from = since.saturating_sub(before.from).min(before.rows.len());
+fn splice(mut before: Forecast, after: &Forecast, since: usize) -> Forecast {
+    let from = since.saturating_sub(before.from).min(before.samples.len());
     let mut shift = [0.0; 2];
-    if let (Some(last), true) = (from.checked_sub(1), from < before.rows.len()) {
+    if let (Some(last), true) = (from.checked_sub(1), from < before.samples.len()) {
         let columns = Quantity::Position.columns();
         for (shift, c) in shift.iter_mut().zip(columns) {
-            let apart = before.rows[last][c] - after.rows[last][c];
+            let apart = before.samples[last][c] - after.samples[last][c];
             *shift = if apart.is_finite() { apart } else { 0.0 };
         }
     }
-    for (ours, theirs) in before.rows[from..].iter_mut().zip(&after.rows[from..]) {
+    for (ours, theirs) in before.samples[from..].iter_mut().zip(&after.samples[from..]) {
         *ours = *theirs;
         ours[Quantity::Position.columns()].iter_mut().zip(shift).for_each(|(x, by)| *x += by);
     }
@@ -255,19 +260,19 @@ fn splice(mut before: Stretch, after: &Stretch, since: usize) -> Stretch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::course::WIDTH;
+    use super::super::machine_sample::WIDTH;
     use super::*;
 
     #[test]
     fn a_machine_goes_over_at_the_instant_and_from_its_place() {
-        let stretch = |value: f64| Stretch { from: 10, rows: vec![[value; WIDTH]; 5] };
-        let spliced = splice(stretch(1.0), &stretch(4.0), 12);
+        let forecast = |value: f64| Forecast { from: 10, samples: vec![[value; WIDTH]; 5] };
+        let spliced = splice(forecast(1.0), &forecast(4.0), 12);
         let (stroke, east) = (0, Quantity::Position.columns().start);
-        let of = |c: usize| spliced.rows.iter().map(|row| row[c]).collect::<Vec<f64>>();
+        let of = |c: usize| spliced.samples.iter().map(|sample| sample[c]).collect::<Vec<f64>>();
         assert_eq!(of(stroke), [1.0, 1.0, 4.0, 4.0, 4.0]);
         assert_eq!(of(east), [1.0; 5]);
-        let all = splice(stretch(1.0), &stretch(4.0), 3);
-        assert_eq!((all.rows[0][stroke], all.rows[0][east]), (4.0, 4.0));
-        assert_eq!(splice(stretch(1.0), &stretch(4.0), 99).rows, stretch(1.0).rows);
+        let all = splice(forecast(1.0), &forecast(4.0), 3);
+        assert_eq!((all.samples[0][stroke], all.samples[0][east]), (4.0, 4.0));
+        assert_eq!(splice(forecast(1.0), &forecast(4.0), 99).samples, forecast(1.0).samples);
     }
 }

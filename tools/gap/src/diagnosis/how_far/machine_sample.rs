@@ -16,7 +16,7 @@ pub(super) const WIDTH: usize = 36;
 const FIX_LIFE_S: f64 = 0.15;
 
 /// One sample, SI; `NaN` where nothing is known.
-pub(super) type Row = [f64; WIDTH];
+pub(super) type MachineSample = [f64; WIDTH];
 
 /// A signal of the whole machine: what shrinks, and by how much, is averaged over these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -119,43 +119,43 @@ impl Quantity {
 }
 
 /// Floors of all numbers of a sample.
-pub(super) fn floors(horizon: Horizon) -> Row {
-    let mut row = [0.0; WIDTH];
+pub(super) fn floors(horizon: Horizon) -> MachineSample {
+    let mut sample = [0.0; WIDTH];
     for quantity in Quantity::ALL {
-        row[quantity.columns()].fill(quantity.floor(horizon));
+        sample[quantity.columns()].fill(quantity.floor(horizon));
     }
-    row
+    sample
 }
 
 /// What was measured, sample by sample.
-pub(super) fn measured(s: &Signals) -> Vec<Row> {
-    (0..s.len).step_by(TICKS_PER_SAMPLE).map(|i| row(s, i)).collect()
+pub(super) fn measured(s: &Signals) -> Vec<MachineSample> {
+    (0..s.len).step_by(TICKS_PER_SAMPLE).map(|i| sample(s, i)).collect()
 }
 
-fn row(s: &Signals, i: usize) -> Row {
-    let mut row = [f64::NAN; WIDTH];
+fn sample(s: &Signals, i: usize) -> MachineSample {
+    let mut sample = [f64::NAN; WIDTH];
     for w in Wheel::ALL {
         let k = w.index();
-        row[Quantity::Stroke.columns().start + k] = s.stroke_reading_m[w][i];
+        sample[Quantity::Stroke.columns().start + k] = s.stroke_reading_m[w][i];
         let is_read = !is_off_scale(s, w, i);
         let load_n = if is_read { s.cylinder_load_n[w][i] } else { f64::NAN };
-        row[Quantity::Load.columns().start + k] = load_n;
-        row[Quantity::WheelSpeed.columns().start + k] = s.wheel_speed_rad_s[w][i];
-        row[Quantity::Opening.columns().start + k] = s.opening[w][i];
+        sample[Quantity::Load.columns().start + k] = load_n;
+        sample[Quantity::WheelSpeed.columns().start + k] = s.wheel_speed_rad_s[w][i];
+        sample[Quantity::Opening.columns().start + k] = s.opening[w][i];
     }
     for k in 0..2 {
-        row[Quantity::Joint.columns().start + k] = s.joint_rad[k][i];
-        row[Quantity::SteerOpening.columns().start + k] = s.steer_opening[k][i];
+        sample[Quantity::Joint.columns().start + k] = s.joint_rad[k][i];
+        sample[Quantity::SteerOpening.columns().start + k] = s.steer_opening[k][i];
     }
-    row[Quantity::Roll.columns().start] = s.roll_rad[i];
-    row[Quantity::Pitch.columns().start] = s.pitch_rad[i];
+    sample[Quantity::Roll.columns().start] = s.roll_rad[i];
+    sample[Quantity::Pitch.columns().start] = s.pitch_rad[i];
     for side in 0..4 {
-        row[Quantity::PumpPressure.columns().start + side] = s.pump_pressure_pa[side][i];
+        sample[Quantity::PumpPressure.columns().start + side] = s.pump_pressure_pa[side][i];
     }
     if let Some([_, east, north]) = fix(s, i) {
-        row[Quantity::Position.columns()].copy_from_slice(&[east, north]);
+        sample[Quantity::Position.columns()].copy_from_slice(&[east, north]);
     }
-    row
+    sample
 }
 
 /// The fix that is in force at sample `i` of the log's clock: its instant, s, and place, m.

@@ -16,9 +16,9 @@ const WHEEL_SPEED_M_S: f64 = 0.02;
 const ATTITUDE_DEG: f64 = 0.3;
 const LOAD_SUM_PERCENT: f64 = 2.0;
 
-/// One signal of a replay.
+/// One signal of a replay against the log: a row of its table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct SignalComparison {
     /// The channel's name; `wheel_load.sum` for the sum of all six.
     pub signal: String,
     /// Unit of the errors below.
@@ -49,7 +49,7 @@ pub(crate) fn rows(
     log: &BTreeMap<Channel, Series>,
     ours: &BTreeMap<Channel, Series>,
     wheel_radius_m: f64,
-) -> Vec<Row> {
+) -> Vec<SignalComparison> {
     let mut rows = Vec::new();
     let groups = groups(wheel_radius_m);
     let (judged, informing): (Vec<_>, Vec<_>) = groups.iter().partition(|g| g.bound.is_some());
@@ -84,23 +84,35 @@ fn groups(wheel_radius_m: f64) -> Vec<Group> {
 }
 
 impl Group {
-    fn rows(&self, log: &BTreeMap<Channel, Series>, ours: &BTreeMap<Channel, Series>) -> Vec<Row> {
+    fn rows(
+        &self,
+        log: &BTreeMap<Channel, Series>,
+        ours: &BTreeMap<Channel, Series>,
+    ) -> Vec<SignalComparison> {
         let row = |channel: &Channel| {
             let errors = Errors::between(log.get(channel)?, ours.get(channel)?)?;
-            Some(Row::new(channel.to_string(), self.unit, errors.scaled(self.per_si), self.bound))
+            Some(SignalComparison::new(
+                channel.to_string(),
+                self.unit,
+                errors.scaled(self.per_si),
+                self.bound,
+            ))
         };
         self.channels.iter().filter_map(row).collect()
     }
 }
 
 /// The sum of the wheel loads, as a share of its mean in the log.
-fn load_sum(log: &BTreeMap<Channel, Series>, ours: &BTreeMap<Channel, Series>) -> Option<Row> {
+fn load_sum(
+    log: &BTreeMap<Channel, Series>,
+    ours: &BTreeMap<Channel, Series>,
+) -> Option<SignalComparison> {
     let (log, ours) = (sum_of_loads(log)?, sum_of_loads(ours)?);
     let errors = Errors::between(&log, &ours)?;
     #[allow(clippy::cast_precision_loss)] // a log of 2^53 samples does not exist
     let mean_n = log.iter().map(|(_, value)| value).sum::<f64>() / log.len() as f64;
     let percent = errors.scaled(100.0 / mean_n);
-    Some(Row::new("wheel_load.sum".to_owned(), "%", percent, Some(LOAD_SUM_PERCENT)))
+    Some(SignalComparison::new("wheel_load.sum".to_owned(), "%", percent, Some(LOAD_SUM_PERCENT)))
 }
 
 /// Sum of the six wheel loads, N; `None` where one of them is not there.
@@ -110,7 +122,7 @@ pub(crate) fn sum_of_loads(series: &BTreeMap<Channel, Series>) -> Option<Series>
     Some(Series::sum(&parts))
 }
 
-impl Row {
+impl SignalComparison {
     fn new(signal: String, unit: &'static str, errors: Errors, bound: Option<f64>) -> Self {
         Self { signal, unit, errors, bound, passed: bound.map(|bound| errors.rmse <= bound) }
     }

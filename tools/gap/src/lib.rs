@@ -36,7 +36,7 @@ mod toml_error;
 
 pub use about::{About, Ground, Run};
 pub use channel::{Channel, Need, PumpSide, SteerSide};
-pub use comparison::Row;
+pub use comparison::SignalComparison;
 pub use decoder::Decoder;
 pub use dimension::Dimension;
 pub use error::{Disagreement, GapError};

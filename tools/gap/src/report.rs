@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::log_fault::told;
-use crate::{LogFault, Row};
+use crate::{LogFault, SignalComparison};
 
 /// Result of one replay.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Report {
     /// What our ECUs did that the log cannot have asked for, such as a safe stop.
     pub notes: Vec<String>,
     /// Signals compared; those with a bound first.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SignalComparison>,
 }
 
 impl Report {
@@ -84,7 +84,7 @@ impl Report {
     }
 }
 
-fn cells(row: &Row) -> [String; 9] {
+fn cells(row: &SignalComparison) -> [String; 9] {
     let e = &row.errors;
     let mark = match row.passed {
         Some(true) => "ok",
@@ -135,7 +135,7 @@ mod tests {
         };
         let bound = Some(5.0);
         let signal = "stroke.FR".to_owned();
-        let row = Row { signal, unit: "mm", errors, bound, passed: Some(rmse <= 5.0) };
+        let row = SignalComparison { signal, unit: "mm", errors, bound, passed: Some(rmse <= 5.0) };
         Report {
             log: "a.log".to_owned(),
             dbc: "a.dbc".to_owned(),

@@ -21,7 +21,7 @@ use crate::GapError;
 
 pub use horizons::{Curve, HORIZONS_S};
 pub use over_time::{CELL_S, Strip};
-pub use regimes::{OF_ARM, REGIMES, Row};
+pub use regimes::{OF_ARM, REGIMES, RegimeGaps};
 pub use traces::Trace;
 
 /// The details of one diagnosis.
@@ -30,7 +30,7 @@ pub struct Details {
     /// The runs.
     pub runs: Vec<RunLine>,
     /// Root mean square of every generator's residual in each of [`REGIMES`], floors.
-    pub map: Vec<Row>,
+    pub map: Vec<RegimeGaps>,
     /// The same over the time of every run.
     pub strips: Vec<Strip>,
     /// Time of every run at which the causes begin, s; 0 where they were there from its start.

@@ -118,7 +118,7 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let verdict = likeliest(&chances);
     // Beside a wrong name tolerances go where that name needs them.
     let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
-    let held_speak = verdict == Verdict::Unknown && findings.objection().is_held;
+    let held_speak = verdict == Verdict::Unknown && findings.objection().is_held_out;
     let (apart, after) = match &findings.held {
         held if held_speak => (&held.unbent, &held.after),
         _ => (apart, &findings.after),

@@ -39,8 +39,8 @@ pub struct Signals {
     pub len: usize,
     /// Stroke commanded; where the arm stood, while it is to be held.
     pub target_stroke_m: PerWheel<Samples>,
-    /// Whether the arm is to be held, its valve shut.
-    pub is_held: PerWheel<Vec<bool>>,
+    /// Whether the arm itself is to be held, its valve shut.
+    pub is_arm_held: PerWheel<Vec<bool>>,
     /// Mode of the arms commanded, 0 to 3.
     pub arm_mode: Samples,
     /// Opening that the ECU's currents ask of each arm valve, -1 to 1.
@@ -141,7 +141,8 @@ impl Signals {
         };
         let stroke_reading_m = wheels(Channel::Stroke);
         let mut target_stroke_m = wheels(Channel::TargetStroke);
-        let is_held = PerWheel::from_fn(|w| hold(&mut target_stroke_m[w], &stroke_reading_m[w]));
+        let is_arm_held =
+            PerWheel::from_fn(|w| hold(&mut target_stroke_m[w], &stroke_reading_m[w]));
         let smooth_stroke_m = PerWheel::from_fn(|w| {
             smooth(&stroke_reading_m[w]).into_iter().map(|read| read + 0.5 * CUT_M).collect()
         });
@@ -152,7 +153,7 @@ impl Signals {
             terrain,
             len,
             target_stroke_m,
-            is_held,
+            is_arm_held,
             arm_mode: sample(Channel::ArmMode),
             opening: PerWheel::from_fn(|w| both(&a[w], &b[w], pins::valve_opening)),
             stroke_rate_m_s: PerWheel::from_fn(|w| slope(&stroke_m[w])),

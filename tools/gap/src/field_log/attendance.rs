@@ -3,7 +3,7 @@
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
-use super::gaps::{GAP_PERIODS, Gaps, Row};
+use super::gaps::{Arrivals, GAP_PERIODS, Gaps};
 use crate::FaultKind;
 use crate::decoder::{Tap, Unread};
 
@@ -21,7 +21,7 @@ pub(super) struct Attendance {
     repeats: u64,
     repeat_line: u64,
     gaps: Gaps,
-    row: Row,
+    arrivals: Arrivals,
     short: Option<(u64, usize, u64)>,
     long: Option<(u64, usize, u64)>,
     spoiled: Option<(u64, f64, u64)>,
@@ -79,7 +79,7 @@ impl Attendance {
                 self.gaps.note((at - before).as_secs_f64(), period.as_secs_f64(), line);
             }
             (None, Some(_)) => {}
-            (_, None) => self.row.note(at, line),
+            (_, None) => self.arrivals.note(at, line),
         }
         let is_news = self.last.as_ref().is_some_and(|last| last.frame.data() != frame.data());
         self.last = Some(Heard { at, frame: *frame, before, is_news });
@@ -87,7 +87,7 @@ impl Attendance {
 
     /// What is missing of it.
     fn missing(&self, tap: &Tap) -> Gaps {
-        if tap.period().is_some() { self.gaps } else { self.row.gaps() }
+        if tap.period().is_some() { self.gaps } else { self.arrivals.gaps() }
     }
 
     /// How many frames are missing, and of how many.

@@ -46,13 +46,13 @@ impl Gaps {
     }
 }
 
-/// The frames of a message of which no database says how often it comes.
+/// When the frames came of a message of which no database says how often it comes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Row {
+pub(super) struct Arrivals {
     came: Vec<(SimTime, u64)>,
 }
 
-impl Row {
+impl Arrivals {
     /// Notes a frame and its line.
     pub(super) fn note(&mut self, at: SimTime, line: u64) {
         self.came.push((at, line));
@@ -89,11 +89,11 @@ mod tests {
     use super::*;
 
     fn row(at_ms: impl Iterator<Item = u64>) -> Gaps {
-        let mut row = Row::default();
+        let mut arrivals = Arrivals::default();
         for (line, ms) in (1..).zip(at_ms) {
-            row.note(SimTime::from_micros(1000 * ms), line);
+            arrivals.note(SimTime::from_micros(1000 * ms), line);
         }
-        row.gaps()
+        arrivals.gaps()
     }
 
     #[test]

@@ -33,9 +33,9 @@ pub(super) struct Intake {
     frames: u64,
     known_frames: u64,
     strange: BTreeSet<CanId>,
-    late: Option<Stretch>,
-    back: Option<Stretch>,
-    ahead: Option<Stretch>,
+    late: Option<LongestSpan>,
+    back: Option<LongestSpan>,
+    ahead: Option<LongestSpan>,
     messages: BTreeMap<CanId, Attendance>,
     stillness: Stillness,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
@@ -44,13 +44,13 @@ pub(super) struct Intake {
 }
 
 /// The longest of several spans of one kind, the line it is at, and how many there are.
-struct Stretch {
+struct LongestSpan {
     line: u64,
     span: Duration,
     times: u64,
 }
 
-impl Stretch {
+impl LongestSpan {
     fn note(kept: &mut Option<Self>, line: u64, span: Duration) {
         let kept = kept.get_or_insert(Self { line, span, times: 0 });
         if span > kept.span {
@@ -66,8 +66,8 @@ impl Intake {
         self.line = line;
         match self.order.put(record.at, line, record.frame) {
             Place::Next => {}
-            Place::Late(by) => Stretch::note(&mut self.late, line, by),
-            Place::Past(by) => return Stretch::note(&mut self.back, line, by),
+            Place::Late(by) => LongestSpan::note(&mut self.late, line, by),
+            Place::Past(by) => return LongestSpan::note(&mut self.back, line, by),
         }
         while let Some((at, line, frame)) = self.order.due() {
             self.hear(decoder, at, line, &frame);
@@ -89,7 +89,7 @@ impl Intake {
         let first = *self.first.get_or_insert(at);
         let silence = at - self.latest.max(first);
         if silence.as_secs_f64() > PAUSE_S {
-            Stretch::note(&mut self.ahead, line, silence);
+            LongestSpan::note(&mut self.ahead, line, silence);
         }
         self.latest = at;
         let Some(tap) = decoder.tap(frame.id()) else {
@@ -122,7 +122,7 @@ impl Intake {
         while let Some((at, line, frame)) = self.order.rest() {
             self.hear(decoder, at, line, &frame);
         }
-        if let Some(Stretch { line, span, times }) = self.back
+        if let Some(LongestSpan { line, span, times }) = self.back
             && times > self.frames / 2
         {
             // Not what came after is out of time, but what came before.
@@ -179,15 +179,15 @@ impl Intake {
     /// What was wrong with the frames, each with its line.
     fn faults_of_frames(&self, decoder: &Decoder) -> Vec<(u64, FaultKind)> {
         let mut kinds = Vec::new();
-        if let Some(Stretch { line, span, times: frames }) = self.late
+        if let Some(LongestSpan { line, span, times: frames }) = self.late
             && span > LATE_TOLD
         {
             kinds.push((line, FaultKind::OutOfOrder { by_s: span.as_secs_f64(), frames }));
         }
-        if let Some(Stretch { line, span, times: frames }) = self.back {
+        if let Some(LongestSpan { line, span, times: frames }) = self.back {
             kinds.push((line, FaultKind::ClockBack { by_s: span.as_secs_f64(), frames }));
         }
-        if let Some(Stretch { line, span, times }) = self.ahead {
+        if let Some(LongestSpan { line, span, times }) = self.ahead {
             kinds.push((line, FaultKind::ClockAhead { by_s: span.as_secs_f64(), times }));
         }
         for (id, attendance) in &self.messages {

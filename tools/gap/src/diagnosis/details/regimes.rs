@@ -36,9 +36,9 @@ const STANDS_M_S: f64 = 0.05;
 /// A change of speed above this is not a steady drive, m/s2.
 const STEADY_M_S2: f64 = 0.1;
 
-/// One generator's gaps.
+/// One generator's gaps, regime by regime: a row of the map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct RegimeGaps {
     /// The generator.
     pub name: String,
     /// Its gap in each of [`REGIMES`], floors; `None` where that did not happen or does not apply.
@@ -48,8 +48,8 @@ pub struct Row {
 }
 
 /// A row for each generator, over all runs.
-pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::new();
+pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<RegimeGaps> {
+    let mut rows: Vec<RegimeGaps> = Vec::new();
     for first in pairs.iter().filter(|pair| pair.run == 0) {
         let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
         let wheel = wheel_of(first.generator);
@@ -67,7 +67,7 @@ pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<Row> {
                 })
             }))
         };
-        rows.push(Row {
+        rows.push(RegimeGaps {
             name: first.generator.to_string(),
             cells: core::array::from_fn(|regime| gap(Some(regime))),
             all: gap(None),

@@ -48,9 +48,9 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
     #[allow(clippy::float_cmp)] // one and the same number, mostly
     let expected = if drive == arms { by_arms } else { by_arms.mean(&expected(effects, drive)) };
     let samples = (WINDOW_S / DT_S) as usize;
-    let seen: Vec<Option<Row>> =
+    let seen: Vec<Option<FrameTiming>> =
         (0..signals.len / samples).map(|window| seen(signals, window as f64, periods_s)).collect();
-    let errors_of = |of: fn(&Row) -> f64, signal: Signal, law: f64| -> Samples {
+    let errors_of = |of: fn(&FrameTiming) -> f64, signal: Signal, law: f64| -> Samples {
         let (mean, floor) = (of(&expected), signal.floor().sigma);
         let doubt = (chance(&seen, of) / floor).hypot(law * mean / floor).hypot(1.0);
         let each = seen.iter().map(|row| row.map_or(f64::NAN, |row| (mean - of(&row)) / doubt));
@@ -64,17 +64,17 @@ pub(super) fn bus_errors(signals: &Signals, effects: &Effects) -> BusErrors {
 }
 
 /// Mean of what arms' and drive's commands look like within a window; `None` where nobody sent any.
-fn seen(signals: &Signals, window: f64, periods_s: [f64; 2]) -> Option<Row> {
+fn seen(signals: &Signals, window: f64, periods_s: [f64; 2]) -> Option<FrameTiming> {
     if !signals.command_times_s.iter().all(|times| spans(times, window)) {
         return None;
     }
-    let row = |k: usize| Row::of_window(&signals.command_times_s[k], window, periods_s[k]);
+    let row = |k: usize| FrameTiming::of_window(&signals.command_times_s[k], window, periods_s[k]);
     Some(row(0).mean(&row(1)))
 }
 
 /// Standard deviation from window to window, of windows that follow one another: what sets in once is no
 /// chance.
-fn chance(seen: &[Option<Row>], of: fn(&Row) -> f64) -> f64 {
+fn chance(seen: &[Option<FrameTiming>], of: fn(&FrameTiming) -> f64) -> f64 {
     let pairs = seen.windows(2).filter_map(|pair| Some(of(&pair[1]?) - of(&pair[0]?)));
     let (count, squares) = pairs.fold((0, 0.0), |(n, sum), by| (n + 1, sum + by * by));
     (squares / f64::from(2 * count.max(1))).sqrt()
@@ -88,28 +88,28 @@ fn spans(times_s: &[f64], window: f64) -> bool {
     *first <= from + BEGINS_S && *last >= to - BEGINS_S
 }
 
-/// What a row of one window looks like under an effect, in the mean.
-fn expected(effects: &Effects, period_s: f64) -> Row {
+/// How regularly the frames of one window come under an effect, in the mean.
+fn expected(effects: &Effects, period_s: f64) -> FrameTiming {
     let times_s = expected_times_s(effects, period_s);
-    let rows: Vec<Row> =
-        (1..ROW).map(|k| Row::of_window(&times_s, f64::from(k), period_s)).collect();
-    let mean = |of: fn(&Row) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
-    Row {
+    let rows: Vec<FrameTiming> =
+        (1..ROW).map(|k| FrameTiming::of_window(&times_s, f64::from(k), period_s)).collect();
+    let mean = |of: fn(&FrameTiming) -> f64| rows.iter().map(of).sum::<f64>() / rows.len() as f64;
+    FrameTiming {
         missing: mean(|row| row.missing),
         out_of_place: mean(|row| row.out_of_place),
         uneven: mean(|row| row.uneven),
     }
 }
 
-/// What a row of frames looks like.
+/// How regularly the frames of a row come.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Row {
+struct FrameTiming {
     missing: f64,
     out_of_place: f64,
     uneven: f64,
 }
 
-impl Row {
+impl FrameTiming {
     fn mean(&self, other: &Self) -> Self {
         Self {
             missing: (self.missing + other.missing) / 2.0,
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
     use crate::diagnosis::signals::PERIOD_S;
 
-    fn row(loss: f64, late_s: f64) -> Row {
+    fn row(loss: f64, late_s: f64) -> FrameTiming {
         let mut effects = Effects::default();
         effects.bus.frame_loss.share = loss;
         effects.bus.command_jitter.latest_s = late_s;

@@ -29,11 +29,11 @@ pub(super) fn arm_opening_error(
     while errors.len() < signals.len {
         let from = errors.len();
         let at_work =
-            |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION && !signals.is_held[wheel][*i];
+            |i: &usize| signals.arm_mode[*i] == MANUAL_POSITION && !signals.is_arm_held[wheel][*i];
         let to = (from..signals.len).find(|i| !at_work(i)).unwrap_or(signals.len);
         let target_m = &signals.target_stroke_m[wheel];
         let mm = |m: f64| (m * 1e3).round();
-        let stretch = Stretch {
+        let span = ControlledSpan {
             error_mm: (from..to)
                 .map(|i| mm(target_m[i] - signals.stroke_reading_m[wheel][i]))
                 .collect(),
@@ -41,15 +41,15 @@ pub(super) fn arm_opening_error(
             moved_mm: (from..to).map(|i| mm(target_m[i] - target_m[i.max(from + 1) - 1])).collect(),
             opening: &signals.opening[wheel][from..to],
         };
-        errors.extend(pi.best_errors(&stretch));
+        errors.extend(pi.best_errors(&span));
         let idle = (to..signals.len).find(at_work).unwrap_or(signals.len) - to;
         errors.extend(core::iter::repeat_n(f64::NAN, idle));
     }
     errors
 }
 
-/// A stretch of a run in which the PI is at work.
-struct Stretch<'a> {
+/// A span of a run in which the PI is at work.
+struct ControlledSpan<'a> {
     /// Target less reading, both whole millimetres.
     error_mm: Vec<f64>,
     /// Which way the end of the stroke lies that the arm stands at, + out, or 0.
@@ -79,14 +79,14 @@ impl Pi {
     }
 
     /// Errors from the sum at the beginning that makes the fewest.
-    fn best_errors(&self, stretch: &Stretch<'_>) -> Samples {
-        let square = |sum: f64| self.errors(stretch, sum).map(|e| e * e).sum::<f64>();
-        self.errors(stretch, best_sum(self.windup_mm_s, HALVINGS, square)).collect()
+    fn best_errors(&self, span: &ControlledSpan<'_>) -> Samples {
+        let square = |sum: f64| self.errors(span, sum).map(|e| e * e).sum::<f64>();
+        self.errors(span, best_sum(self.windup_mm_s, HALVINGS, square)).collect()
     }
 
-    fn errors(&self, stretch: &Stretch<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {
-        let asked = self.asked(&stretch.error_mm, sum_mm_s);
-        let known = stretch.moved_mm.iter().zip(&stretch.end).zip(stretch.opening);
+    fn errors(&self, span: &ControlledSpan<'_>, sum_mm_s: f64) -> impl Iterator<Item = f64> {
+        let asked = self.asked(&span.error_mm, sum_mm_s);
+        let known = span.moved_mm.iter().zip(&span.end).zip(span.opening);
         asked.zip(known).map(|(asked, ((moved_mm, end), opening))| {
             let before = (asked - self.kp_per_mm * moved_mm).clamp(-self.most, self.most);
             let shut = if asked * end > 0.0 { 0.0 } else { asked };
@@ -130,10 +130,10 @@ mod tests {
         pi.asked(error_mm, sum).map(|asked| (asked / STEP).trunc() * STEP).collect()
     }
 
-    /// A stretch whose target stands.
-    fn standing(error_mm: Vec<f64>, opening: &[f64]) -> Stretch<'_> {
+    /// A span whose target stands.
+    fn standing(error_mm: Vec<f64>, opening: &[f64]) -> ControlledSpan<'_> {
         let still = vec![0.0; error_mm.len()];
-        Stretch { end: still.clone(), moved_mm: still, error_mm, opening }
+        ControlledSpan { end: still.clone(), moved_mm: still, error_mm, opening }
     }
 
     #[test]
@@ -144,8 +144,9 @@ mod tests {
         let of = |behind_mm: f64| -> Vec<f64> { now.iter().map(|mm| mm - behind_mm).collect() };
         let worst = |behind_mm: f64| {
             let opening = sent(&pi, &of(behind_mm), 0.0);
-            let stretch = Stretch { moved_mm: moved_mm.clone(), ..standing(now.clone(), &opening) };
-            pi.best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()))
+            let span =
+                ControlledSpan { moved_mm: moved_mm.clone(), ..standing(now.clone(), &opening) };
+            pi.best_errors(&span).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()))
         };
         assert!(worst(0.0) < 0.2 * STEP && worst(2.0) < STEP, "{} {}", worst(0.0), worst(2.0));
         assert!(worst(6.0) > 2.0 * STEP, "{}", worst(6.0));
@@ -156,8 +157,9 @@ mod tests {
         // Target 0 after a way out: the PI still asks to go in.
         let pi = pi();
         let worst = |end: f64| {
-            let stretch = Stretch { end: vec![end; 200], ..standing(vec![-3.0; 200], &[0.0; 200]) };
-            pi.errors(&stretch, -100.0).fold(0.0, |w: f64, e| w.max(e.abs()))
+            let span =
+                ControlledSpan { end: vec![end; 200], ..standing(vec![-3.0; 200], &[0.0; 200]) };
+            pi.errors(&span, -100.0).fold(0.0, |w: f64, e| w.max(e.abs()))
         };
         assert_eq!(worst(-1.0), 0.0);
         assert!(
@@ -179,9 +181,8 @@ mod tests {
         for sum in [-100.0, -13.0, 0.0, 61.0] {
             let error_mm = errors_mm();
             let opening = sent(&pi(), &error_mm, sum);
-            let stretch = standing(error_mm, &opening);
-            let worst =
-                pi().best_errors(&stretch).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()));
+            let span = standing(error_mm, &opening);
+            let worst = pi().best_errors(&span).into_iter().fold(0.0, |w: f64, e| w.max(e.abs()));
             assert!(worst < 0.2 * STEP, "{sum}: {worst}");
         }
     }
@@ -190,9 +191,9 @@ mod tests {
     fn another_gain_shows() {
         let error_mm = errors_mm();
         let opening = sent(&pi(), &error_mm, 0.0);
-        let stretch = standing(error_mm, &opening);
+        let span = standing(error_mm, &opening);
         let louder = Pi { kp_per_mm: 1.5 * pi().kp_per_mm, ..pi() };
-        let errors = louder.best_errors(&stretch);
+        let errors = louder.best_errors(&span);
         let rms = (errors.iter().map(|e| e * e).sum::<f64>() / 1500.0).sqrt();
         assert!(rms > 4.0 * STEP, "{rms}");
     }

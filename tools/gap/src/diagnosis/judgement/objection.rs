@@ -45,7 +45,7 @@ pub(super) struct Objection {
     /// The signal that it is about; none where it is about tolerances.
     pub(super) at: Option<(Generator, Signal)>,
     /// Whether it is of the runs held out.
-    pub(super) is_held: bool,
+    pub(super) is_held_out: bool,
 }
 
 impl Findings {
@@ -74,7 +74,7 @@ impl Findings {
             times: excess(&names, [before, after], explained),
             why: how_much([before, after]),
             at: Some((after.generator, after.signal)),
-            is_held: false,
+            is_held_out: false,
         })
     }
 
@@ -90,7 +90,7 @@ impl Findings {
                 after.generator
             ),
             at: Some((after.generator, after.signal)),
-            is_held: false,
+            is_held_out: false,
         })
     }
 
@@ -105,12 +105,12 @@ impl Findings {
             times: excess(&names, [before, after], 0.0) / HELD,
             why: format!("{} in the runs held out", how_much([before, after])),
             at: Some((after.generator, after.signal)),
-            is_held: true,
+            is_held_out: true,
         });
         let bent = self.furthest(shifts).map(|bent| Objection {
             times: bent.times / HELD,
             why: format!("{} in the runs held out", bent.why),
-            is_held: true,
+            is_held_out: true,
             ..bent
         });
         left.chain(bent)
@@ -127,7 +127,7 @@ impl Findings {
                 echo.nats
             ),
             at: Some((echo.generator, echo.signal)),
-            is_held: false,
+            is_held_out: false,
         })
     }
 
@@ -146,7 +146,7 @@ impl Findings {
                     uneven.place()
                 ),
                 at: Some((uneven.generator, uneven.signal)),
-                is_held: false,
+                is_held_out: false,
             }
         })
     }
@@ -167,7 +167,7 @@ impl Findings {
                 times: AT_ITS_END,
                 why: format!("its {} would have to be beyond {end}, where its law ends", p.name),
                 at: None,
-                is_held: false,
+                is_held_out: false,
             })
         })
     }
@@ -183,7 +183,7 @@ impl Findings {
                 "all tolerances together would have to move by {squares:.0} squares of their own"
             ),
             at: None,
-            is_held: false,
+            is_held_out: false,
         }
     }
 
@@ -195,7 +195,7 @@ impl Findings {
             times: (by / SHIFT).powi(2),
             why: format!("a tolerance, {knob}, would have to move by {:.1} of its own", by.abs()),
             at: None,
-            is_held: false,
+            is_held_out: false,
         })
     }
 
@@ -261,7 +261,7 @@ mod tests {
         };
         assert!(of(1.4).times < 1.0);
         let loud = of(9.0);
-        assert!(loud.is_held && loud.times > 3.0 && loud.why.contains("held out"), "{loud:?}");
+        assert!(loud.is_held_out && loud.times > 3.0 && loud.why.contains("held out"), "{loud:?}");
     }
 
     #[test]

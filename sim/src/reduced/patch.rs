@@ -37,7 +37,7 @@ struct Bristles {
 }
 
 impl Bristles {
-    fn new(brush: &Brush, creep_m_s_n: f64, wheel: &Rolling, dt_s: f64) -> Self {
+    fn new(brush: &Brush, creep_m_s_n: f64, wheel: &RollingWheel, dt_s: f64) -> Self {
         let stiffness_n_m = [brush.longitudinal_n_m, brush.lateral_n_m];
         let damping = |k: f64| 2.0 * BRISTLE_DAMPING * (k * wheel.wheel_kg).sqrt();
         let rolled = wheel.rim_m_s.abs() * dt_s / brush.relaxation_m;
@@ -52,7 +52,7 @@ impl Bristles {
 
 /// A wheel as its patch sees it at the start of a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rolling {
+pub(super) struct RollingWheel {
     pub(super) bristle_m: [f64; 2],
     pub(super) axle: DVec3,
     /// Speed of the rim as the wheel turns against the world, m/s.
@@ -61,7 +61,7 @@ pub(super) struct Rolling {
 }
 
 impl Patch {
-    pub(super) fn new(tyre: &TyrePart, wheel: &Rolling, dt_s: f64) -> Self {
+    pub(super) fn new(tyre: &TyrePart, wheel: &RollingWheel, dt_s: f64) -> Self {
         Self {
             bristles: tyre.brush.map(|brush| Bristles::new(&brush, tyre.creep_m_s_n, wheel, dt_s)),
             friction: tyre.friction,
@@ -153,8 +153,12 @@ mod tests {
     fn after_a_second(tyre: &TyrePart, velocity: DVec3, depth_m: f64) -> [f64; 2] {
         let mut deflection_m = [0.0; 2];
         for _ in 0..200 {
-            let wheel =
-                Rolling { bristle_m: deflection_m, axle: DVec3::Y, rim_m_s: 1.0, wheel_kg: 550.0 };
+            let wheel = RollingWheel {
+                bristle_m: deflection_m,
+                axle: DVec3::Y,
+                rim_m_s: 1.0,
+                wheel_kg: 550.0,
+            };
             let patch = Patch::new(tyre, &wheel, DT_S);
             let place = (Body::Wheel(0), DVec3::ZERO, DVec3::Z);
             // Two minima that share one contact are as one.

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::contact::{Body, Contact, ContactLaw, Grip};
 use super::ground::Touches;
-use super::patch::{Patch, Rolling};
+use super::patch::{Patch, RollingWheel};
 use super::pose::{Pose, State};
 use super::spatial::{Spatial, angular, velocity_at};
 use super::tree::Tree;
@@ -144,7 +144,7 @@ impl Search {
 pub(super) fn patches(tree: &Tree, (pose, state): (&Pose, &State), dt_s: f64) -> [Patch; 6] {
     let rolling_rad_s = pose.rolling_rad_s(&state.rate);
     core::array::from_fn(|i| {
-        let wheel = Rolling {
+        let wheel = RollingWheel {
             bristle_m: state.bristle_m[i],
             axle: pose.arm[i].axle,
             rim_m_s: rolling_rad_s[i] * tree.radius_m,

@@ -54,7 +54,7 @@ pub use generator::{Generator, Residual, share_resistance};
 pub use how_far::{Horizon, HowFar, Quantity, Refit, Traces, overlay};
 pub use hypothesis::{Fit, Hypothesis};
 pub use inquiry::{FieldRun, Inquiry};
-pub use judgement::Findings;
+pub use judgement::{Findings, HeldOut, HeldOutSignal, SignalFindings};
 pub(crate) use knob::SHIFT_MAX;
 pub use knob::{Knob, TOLERANCES, Tolerance};
 pub(crate) use next_drive::scripted_drive;

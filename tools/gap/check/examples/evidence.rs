@@ -12,7 +12,9 @@
 
 use std::path::PathBuf;
 
-use xt28_gap::diagnosis::{Candidate, Echo, Evidence, Findings, Knob, Signals, Uneven};
+use xt28_gap::diagnosis::{
+    Candidate, Echo, Evidence, Findings, Knob, SignalFindings, Signals, Uneven,
+};
 use xt28_gap_check::Source;
 use xt28_sim::Effects;
 use xt28_sim::effects::find;
@@ -64,16 +66,17 @@ fn print(findings: &Findings) {
     for [first, second] in findings.pair.iter().take(LISTED / 2) {
         println!("  {} beside {}", line(second), first.fit.hypothesis.effect.name);
     }
-    let mut left: Vec<_> = findings.unbent.iter().zip(&findings.after).collect();
-    left.sort_by(|a, b| b.1.square.total_cmp(&a.1.square));
-    for (unbent, after) in left.into_iter().take(LISTED) {
+    let mut signals: Vec<&SignalFindings> = findings.signals.iter().collect();
+    signals.sort_by(|a, b| b.after.square.total_cmp(&a.after.square));
+    for SignalFindings { unbent, after, .. } in signals.into_iter().take(LISTED) {
         let (before, after_floors) = (unbent.square.sqrt(), after.square.sqrt());
         println!(
             "    {} {}: {before:.2} to {after_floors:.2}, again and again {:.1} to {:.1}",
             after.generator, after.signal, unbent.recurring, after.recurring
         );
     }
-    let mut echoes: Vec<_> = findings.echoes.iter().collect();
+    let mut echoes: Vec<&Echo> =
+        findings.signals.iter().filter_map(|of| of.echo.as_ref()).collect();
     echoes.sort_by(|a, b| b.nats.total_cmp(&a.nats));
     for Echo { generator, signal, nats, explained, .. } in echoes.into_iter().take(LOUDEST) {
         println!("    {generator} {signal}: {nats:.1} nats of echo, {explained:.0} explained");

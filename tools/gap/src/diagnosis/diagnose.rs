@@ -8,7 +8,7 @@ use super::excitation::Shown;
 use super::how_far::HowFar;
 use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
-use super::judgement::{Findings, HeldOut, judge};
+use super::judgement::{Findings, HeldOut, HeldOutSignal, SignalFindings, judge};
 use super::knob::{Knob, SHIFT_MAX};
 use super::overlap::{Paid, own_share};
 use super::signals::Signals;
@@ -77,9 +77,9 @@ impl Inquiry {
         let single = tested(first.candidates(&self.catalogue), &shown);
         let Some(best) = single.first() else {
             let Paid { left: after, shifts } = first.paid(&[]);
-            let apart = after.clone();
-            let held = first.held(&first, &[]);
-            return Findings { unbent, alone, apart, after, held, shifts, ..Findings::default() };
+            let signals = SignalFindings::each([&unbent, &alone, &after, &after], &[]);
+            let held_out = first.held_out(&first, &[]);
+            return Findings { signals, shifts, held_out, ..Findings::default() };
         };
         tell("trying second causes", 0.4);
         let Pairs { pair, firsts, beside } = self.second(&docket, &single, &shown);
@@ -97,21 +97,10 @@ impl Inquiry {
         };
         let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
         let (echoes, unevens) = court.again(&[last], nothing);
-        let held = first.held(court, &[last]);
+        let held_out = first.held_out(court, &[last]);
         let apart = first.apart(&believed, SHIFT_MAX);
-        Findings {
-            unbent,
-            alone,
-            apart,
-            single,
-            pair,
-            firsts,
-            after,
-            echoes,
-            unevens,
-            held,
-            shifts,
-        }
+        let signals = SignalFindings::each([&unbent, &alone, &apart, &after], &echoes);
+        Findings { signals, unevens, single, pair, firsts, shifts, held_out }
     }
 
     /// Two causes at once, the best first, none where one is enough; and what was found on the way.
@@ -177,10 +166,10 @@ struct Pairs<'a> {
 
 impl Docket<'_> {
     /// What the runs held out say of `fits`, which were found in `court`.
-    fn held(&self, court: &Docket<'_>, fits: &[&Fit]) -> HeldOut {
+    fn held_out(&self, court: &Docket<'_>, fits: &[&Fit]) -> HeldOut {
+        let signals = self.unbent_held().into_iter().zip(court.left_held(fits));
         HeldOut {
-            unbent: self.unbent_held(),
-            after: court.left_held(fits),
+            signals: signals.map(|(unbent, after)| HeldOutSignal { unbent, after }).collect(),
             shifts: court.shifts_held(fits),
         }
     }

@@ -8,104 +8,23 @@
 mod allowed;
 mod beginning;
 mod causes;
+mod findings;
 mod notes;
 mod objection;
 mod places;
 mod untested;
 
-use super::candidates::Candidate;
-use super::evidence::{Echo, Left, Uneven};
+use super::evidence::Left;
 use super::inquiry::{FieldRun, Inquiry};
-use super::knob::Knob;
-use super::scales::{Chances, Grounds, Scales};
+use super::scales::{Chances, Scales};
 use super::verdict::{Diagnosis, Verdict};
 use beginning::is_told;
 use causes::causes;
 pub(super) use causes::temperature;
+pub use findings::{Findings, HeldOut, HeldOutSignal, SignalFindings};
 use notes::notes;
 use places::{places, unexplained};
 use untested::tell_untested;
-
-/// What the logs say of every hypothesis.
-#[derive(Clone, Debug, Default)]
-pub struct Findings {
-    /// What each signal leaves while nothing is believed to be wrong, tolerances where they are believed
-    /// to be.
-    pub unbent: Vec<Left>,
-    /// The same with the tolerances where they are while nothing is believed, none further than one of its
-    /// own: what parts on a machine that nobody can name the fault of.
-    pub alone: Vec<Left>,
-    /// The same with the tolerances where they are once the best cause or pair is believed.
-    pub apart: Vec<Left>,
-    /// Single causes, best first.
-    pub single: Vec<Candidate>,
-    /// Pairs of causes, best first; empty where one is enough.
-    pub pair: Vec<[Candidate; 2]>,
-    /// What may be the first of the best pair, sought anew beside its second, best first.
-    pub firsts: Vec<Candidate>,
-    /// What each signal leaves under the best cause or pair.
-    pub after: Vec<Left>,
-    /// How much of that is what they explain, moved in time.
-    pub echoes: Vec<Echo>,
-    /// Whether it is another share of that in one half of all runs than in the other.
-    pub unevens: Vec<Uneven>,
-    /// The runs that were held out.
-    pub held: HeldOut,
-    /// Where the tolerances go beside the best cause or pair, each by how many of its own.
-    pub shifts: Vec<(Knob, f64)>,
-}
-
-/// What runs that were held out say of the best cause or pair; nothing where there are none.
-#[derive(Clone, Debug, Default)]
-pub struct HeldOut {
-    /// [`Findings::unbent`] of them.
-    pub unbent: Vec<Left>,
-    /// [`Findings::after`] of them, tolerances at their best there.
-    pub after: Vec<Left>,
-    /// [`Findings::shifts`] of them.
-    pub shifts: Vec<(Knob, f64)>,
-}
-
-impl Findings {
-    /// How far the worst signal lies above what a right answer leaves, or its echo above that of one, or
-    /// the tolerances, all together or the one that goes furthest, above what it takes; about one where
-    /// all is explained.
-    #[must_use]
-    pub fn left_over(&self) -> f64 {
-        self.objection().times
-    }
-
-    /// What [`Self::left_over`] is about, after `because`.
-    #[must_use]
-    pub fn left_over_why(&self) -> String {
-        self.objection().why
-    }
-
-    /// The same of the runs held out alone, and what speaks loudest there; nothing without any.
-    #[must_use]
-    pub fn left_over_held(&self) -> Option<(f64, String)> {
-        let loudest = self.held_left().max_by(|a, b| a.times.total_cmp(&b.times))?;
-        Some((loudest.times, loudest.why))
-    }
-
-    /// What a verdict on them rests on.
-    #[must_use]
-    pub fn grounds(&self) -> Grounds {
-        Grounds { evidence_nats: self.evidence(), left_over: self.left_over() }
-    }
-
-    /// The best pair, or the best cause where one is enough.
-    fn believed(&self) -> impl Iterator<Item = &Candidate> {
-        let alone = self.single.first().filter(|_| self.pair.is_empty());
-        self.pair.first().into_iter().flatten().chain(alone)
-    }
-
-    /// Evidence of the best cause, nats.
-    #[must_use]
-    pub fn evidence(&self) -> f64 {
-        self.single.first().map_or(0.0, |best| best.score().max(0.0))
-    }
-}
 
 /// The verdict on `findings`.
 pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
@@ -116,14 +35,8 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
         cause.begins = None;
     }
     let verdict = likeliest(&chances);
-    // Beside a wrong name tolerances go where that name needs them.
-    let apart = if verdict == Verdict::Unknown { &findings.alone } else { &findings.apart };
-    let held_speak = verdict == Verdict::Unknown && findings.objection().is_held_out;
-    let (apart, after) = match &findings.held {
-        held if held_speak => (&held.unbent, &held.after),
-        _ => (apart, &findings.after),
-    };
-    let places = places(apart, after);
+    let [before, after] = gaps(findings, verdict);
+    let places = places(&before, &after);
     let objection = findings.objection().at.filter(|_| verdict == Verdict::Unknown);
     let mut diagnosis = Diagnosis {
         unexplained: objection.map(|at| unexplained(at, &places)),
@@ -139,6 +52,20 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     tell_untested(&mut diagnosis, inquiry);
     diagnosis.notes = notes(inquiry, findings, verdict);
     diagnosis
+}
+
+/// What each signal leaves before and after the best cause or pair is believed, as places are told by.
+fn gaps(findings: &Findings, verdict: Verdict) -> [Vec<Left>; 2] {
+    let (signals, held_out) = (findings.signals.iter(), findings.held_out.signals.iter());
+    let (before, after) = match verdict {
+        Verdict::Unknown if findings.objection().is_held_out => {
+            held_out.map(|of| (of.unbent, of.after)).unzip()
+        }
+        // Beside a wrong name tolerances go where that name needs them.
+        Verdict::Unknown => signals.map(|of| (of.alone, of.after)).unzip(),
+        Verdict::Effect | Verdict::None => signals.map(|of| (of.apart, of.after)).unzip(),
+    };
+    [before, after]
 }
 
 /// The likeliest of the three answers that a log can tell apart.
@@ -168,27 +95,28 @@ mod tests {
     use xt28_machine::{Machine, Wheel};
     use xt28_sim::effects::{Block, Scope};
 
+    use super::super::candidates::Candidate;
     use super::super::floor::Signal;
     use super::super::generator::Generator;
+    use super::super::knob::Knob;
     use super::*;
 
     fn candidate(name: &str, score: f64) -> Candidate {
         Candidate::made_up(name, Scope::All, score)
     }
 
-    fn left(square: f64) -> Vec<Left> {
-        vec![Left::evenly(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, square, 100.0)]
+    fn left(square: f64) -> Left {
+        Left::evenly(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, square, 100.0)
+    }
+
+    /// One signal before and after the best cause is believed.
+    fn signals(squares: [f64; 2]) -> Vec<SignalFindings> {
+        vec![SignalFindings::of(squares.map(left))]
     }
 
     fn judged(before: f64, after: f64, single: Vec<Candidate>) -> Diagnosis {
-        let findings = Findings {
-            unbent: left(before),
-            alone: left(before),
-            apart: left(before),
-            single,
-            after: left(after),
-            ..Findings::default()
-        };
+        let signals = signals([before, after]);
+        let findings = Findings { signals, single, ..Findings::default() };
         judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings)
     }
 
@@ -233,21 +161,15 @@ mod tests {
 
     #[test]
     fn what_is_unknown_is_where_the_objection_is_and_not_where_the_gap_is_largest() {
-        let of = |generator, signal, squares| {
-            let left = left(squares);
-            left.into_iter().map(|l| Left { generator, signal, ..l }).collect::<Vec<_>>()
+        let of = |generator, signal, squares: [f64; 2]| {
+            let left = squares.map(|square| Left { generator, signal, ..left(square) });
+            SignalFindings::of(left)
         };
-        let both = |stroke, roll| {
-            let stroke = of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, stroke);
-            [stroke, of(Generator::Stance, Signal::Roll, roll)].concat()
-        };
-        let before = both(900.0, 100.0);
+        let stroke = of(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, [900.0, 1.0]);
+        let roll = of(Generator::Stance, Signal::Roll, [100.0, 100.0]);
         let findings = Findings {
-            unbent: before.clone(),
-            alone: before.clone(),
-            apart: before,
+            signals: vec![stroke, roll],
             single: vec![candidate("leakage-drift", 900.0)],
-            after: both(1.0, 100.0),
             ..Findings::default()
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);
@@ -258,17 +180,14 @@ mod tests {
 
     #[test]
     fn where_nobody_knows_the_cause_a_wrong_name_does_not_move_the_place() {
-        let steering = || {
-            let generator = Generator::Joint(0);
-            let left = left(30.0);
-            left.into_iter().map(|l| Left { generator, signal: Signal::JointAngle, ..l }).collect()
-        };
+        let (generator, signal) = (Generator::Joint(0), Signal::JointAngle);
+        let alone = Left { generator, signal, ..left(30.0) };
         let findings = |left_over| Findings {
-            unbent: left(400.0),
-            alone: steering(),
-            apart: left(400.0),
+            signals: vec![SignalFindings {
+                alone,
+                ..SignalFindings::of([400.0, left_over].map(left))
+            }],
             single: vec![candidate("leakage-drift", 300.0)],
-            after: left(left_over),
             ..Findings::default()
         };
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
@@ -282,10 +201,7 @@ mod tests {
         let inquiry = Inquiry::new(Machine::xt28(), Vec::new());
         let verdict = |by: f64| {
             let findings = Findings {
-                unbent: left(1.0),
-                alone: left(1.0),
-                apart: left(1.0),
-                after: left(1.0),
+                signals: signals([1.0, 1.0]),
                 shifts: vec![(knob, by)],
                 ..Findings::default()
             };
@@ -306,12 +222,9 @@ mod tests {
     fn both_of_a_pair_are_stood_by() {
         let [a, b] = [candidate("arm-delay", 500.0), candidate("payload", 300.0)];
         let findings = Findings {
-            unbent: left(100.0),
-            alone: left(100.0),
-            apart: left(100.0),
+            signals: signals([100.0, 1.0]),
             single: vec![a.clone(), b.clone()],
             pair: vec![[a, b]],
-            after: left(1.0),
             ..Findings::default()
         };
         let diagnosis = judge(&Inquiry::new(Machine::xt28(), Vec::new()), &findings);

@@ -10,7 +10,7 @@ use super::super::inquiry::Inquiry;
 use super::super::signals::{PERIOD_S, command_periods_s};
 use super::super::verdict::Verdict;
 use super::objection::Objection;
-use super::{Findings, held_out_runs};
+use super::{Findings, SignalFindings, held_out_runs};
 
 /// A gap beyond this is no other machine's, but may be another wheel's.
 const WHEELS_APART: f64 = 5.0;
@@ -111,7 +111,8 @@ impl Findings {
                 ArmOpening | Contact(_) | DriveDifference | Roll | Stroke | WeightX | WeightY
             )
         };
-        let both = self.alone.iter().chain(&self.held.unbent);
+        let fitted = self.signals.iter().map(|of| &of.alone);
+        let both = fitted.chain(self.held_out.signals.iter().map(|of| &of.unbent));
         let worst = both.max_by(|a, b| a.square.total_cmp(&b.square))?;
         (tells(worst.signal) && worst.square > WHEELS_APART * WHEELS_APART).then(|| {
             "wheels in another order than the mapping has them look like this too: compare the names of \
@@ -123,11 +124,12 @@ impl Findings {
     /// How much of the squares of all gaps beyond their floors the best cause or pair takes away, beside tolerances
     /// that are the same with it and without: where next to nothing, something fits best all the same.
     fn explained_share(&self) -> f64 {
-        let beyond = |all: &[Left]| -> f64 {
-            all.iter().map(|left| (left.square - 1.0).max(0.0) * left.samples).sum()
+        let beyond = |of: fn(&SignalFindings) -> &Left| -> f64 {
+            let all = self.signals.iter().map(of);
+            all.map(|left| (left.square - 1.0).max(0.0) * left.samples).sum()
         };
-        let there = beyond(&self.apart).max(f64::MIN_POSITIVE);
-        1.0 - beyond(&self.after) / there
+        let there = beyond(|of| &of.apart).max(f64::MIN_POSITIVE);
+        1.0 - beyond(|of| &of.after) / there
     }
 
     fn why_unknown(&self, objection: &Objection) -> String {
@@ -173,10 +175,10 @@ mod tests {
     #[test]
     fn what_fits_best_is_named_only_where_it_explains_a_fair_share() {
         let of = |square: f64| {
-            let left = |square| vec![Left::evenly(Generator::Stance, Signal::Roll, square, 100.0)];
+            let left = |square| Left::evenly(Generator::Stance, Signal::Roll, square, 100.0);
             let single = vec![Candidate::made_up("soft-tyres", Scope::All, 90.0)];
-            let [unbent, apart, after] = [400.0, 400.0, square].map(left);
-            let findings = Findings { single, unbent, apart, after, ..Findings::default() };
+            let signals = vec![SignalFindings::of([400.0, square].map(left))];
+            let findings = Findings { single, signals, ..Findings::default() };
             findings.why_unknown(&findings.objection())
         };
         assert!(of(200.0).starts_with("soft-tyres (all) fits best"), "{}", of(200.0));
@@ -196,8 +198,9 @@ mod tests {
     #[test]
     fn a_machine_that_stands_askew_may_have_its_wheels_in_another_order() {
         let of = |signal, floors: f64| {
-            let alone = vec![Left::evenly(Generator::Stance, signal, floors * floors, 30.0)];
-            Findings { alone, ..Findings::default() }.another_order().is_some()
+            let left = Left::evenly(Generator::Stance, signal, floors * floors, 30.0);
+            let signals = vec![SignalFindings::of([left, left])];
+            Findings { signals, ..Findings::default() }.another_order().is_some()
         };
         assert!(of(Signal::Roll, 18.0));
         assert!(!of(Signal::Roll, 3.0));
@@ -207,10 +210,10 @@ mod tests {
     #[test]
     fn a_machine_that_turns_otherwise_has_joints_to_be_looked_at() {
         let of = |signal| {
-            let left = |square| vec![Left::evenly(Generator::Turning, signal, square, 100.0)];
+            let left = |square| Left::evenly(Generator::Turning, signal, square, 100.0);
             let single = vec![Candidate::made_up("steer-lag", Scope::All, 90.0)];
-            let [unbent, apart, after] = [9.0, 9.0, 8.0].map(left);
-            let findings = Findings { single, unbent, apart, after, ..Findings::default() };
+            let signals = vec![SignalFindings::of([9.0, 8.0].map(left))];
+            let findings = Findings { single, signals, ..Findings::default() };
             joints_elsewhere(&findings.objection())
         };
         assert!(of(Signal::YawRate).is_some_and(|note| note.contains("a joint's sensor")));

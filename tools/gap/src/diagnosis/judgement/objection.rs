@@ -2,13 +2,13 @@
 //! is not one, or tolerances that would have to bend.
 
 use super::super::candidates::Candidate;
-use super::super::evidence::{Echo, Left};
+use super::super::evidence::Left;
 use super::super::floor::Signal;
 use super::super::generator::Generator;
 use super::super::hypothesis::Fit;
 use super::super::knob::Knob;
 use super::allowed::{echoing, excess, is_vague, parting, recurring};
-use super::{Findings, HeldOut};
+use super::{Findings, HeldOut, HeldOutSignal, SignalFindings};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what
 /// is not in the catalogue bends them by more.
@@ -68,11 +68,9 @@ impl Findings {
 
     fn signals_left(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        let explained = self.echoes.iter().map(Echo::square).chain(std::iter::repeat(0.0));
-        let signals = self.unbent.iter().zip(&self.after).zip(explained);
-        signals.map(move |((before, after), explained)| Objection {
-            times: excess(&names, [before, after], explained),
-            why: how_much([before, after]),
+        self.signals.iter().map(move |of @ SignalFindings { unbent, after, .. }| Objection {
+            times: excess(&names, [unbent, after], of.explained_square()),
+            why: how_much([unbent, after]),
             at: Some((after.generator, after.signal)),
             is_held_out: false,
         })
@@ -81,8 +79,8 @@ impl Findings {
     /// Bumps that are no accident: they are hidden in no mean.
     fn recurring(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        self.unbent.iter().zip(&self.after).map(move |(before, after)| Objection {
-            times: recurring(&names, [before, after]),
+        self.signals.iter().map(move |SignalFindings { unbent, after, .. }| Objection {
+            times: recurring(&names, [unbent, after]),
             why: format!(
                 "{:.0} floors are left of the {} of {} again and again",
                 after.recurring,
@@ -98,12 +96,11 @@ impl Findings {
     /// explains is in its evidence already.
     pub(super) fn held_left(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        let HeldOut { unbent, after, shifts } = &self.held;
-        let each = unbent.iter().zip(after);
-        let strange = each.filter(|(before, after)| after.square > STRANGE * before.square);
-        let left = strange.map(move |(before, after)| Objection {
-            times: excess(&names, [before, after], 0.0) / HELD,
-            why: format!("{} in the runs held out", how_much([before, after])),
+        let HeldOut { signals, shifts } = &self.held_out;
+        let strange = signals.iter().filter(|of| of.after.square > STRANGE * of.unbent.square);
+        let left = strange.map(move |HeldOutSignal { unbent, after }| Objection {
+            times: excess(&names, [unbent, after], 0.0) / HELD,
+            why: format!("{} in the runs held out", how_much([unbent, after])),
             at: Some((after.generator, after.signal)),
             is_held_out: true,
         });
@@ -118,7 +115,7 @@ impl Findings {
 
     fn echoing(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        self.echoes.iter().map(move |echo| Objection {
+        self.signals.iter().filter_map(|of| of.echo.as_ref()).map(move |echo| Objection {
             times: echoing(&names, echo),
             why: format!(
                 "what is left of the {} of {} is what is explained of it, moved in time ({:.0} nats)",
@@ -229,20 +226,23 @@ mod tests {
     use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
-    use super::super::super::evidence::{Half, Uneven};
+    use super::super::super::evidence::{Echo, Half, Uneven};
     use super::*;
 
-    fn echo(nats: f64) -> Echo {
-        let generator = Generator::ArmStroke(Wheel::Fr);
-        Echo { generator, signal: Signal::Stroke, nats, explained: 900.0, samples: 150.0 }
+    /// A signal that is quiet but for an echo.
+    fn echoing_alone(nats: f64) -> SignalFindings {
+        let (generator, signal) = (Generator::ArmStroke(Wheel::Fr), Signal::Stroke);
+        let quiet = Left::evenly(generator, signal, 0.0, 150.0);
+        let echo = Echo { generator, signal, nats, explained: 900.0, samples: 150.0 };
+        SignalFindings { echo: Some(echo), ..SignalFindings::of([quiet, quiet]) }
     }
 
     #[test]
     fn the_strongest_is_told() {
         let [knob, ..] = Knob::all()[..] else { panic!("there are knobs") };
         let of = |nats, by| {
-            let (echoes, shifts) = (vec![echo(nats)], vec![(knob, by)]);
-            Findings { echoes, shifts, ..Findings::default() }.objection()
+            let (signals, shifts) = (vec![echoing_alone(nats)], vec![(knob, by)]);
+            Findings { signals, shifts, ..Findings::default() }.objection()
         };
         let [echoing, bent] = [of(60.0, 2.0), of(2.0, -7.0)];
         assert!(echoing.times > 1.5 && echoing.why.contains("stroke of arm FR"), "{echoing:?}");
@@ -255,9 +255,10 @@ mod tests {
     fn what_runs_held_out_leave_speaks_where_it_is_well_beyond_a_floor() {
         let of = |floors: f64| {
             let square = floors * floors;
-            let left = vec![Left::evenly(Generator::Joint(0), Signal::JointAngle, square, 100.0)];
-            let held = HeldOut { unbent: left.clone(), after: left, ..HeldOut::default() };
-            Findings { held, ..Findings::default() }.objection()
+            let left = Left::evenly(Generator::Joint(0), Signal::JointAngle, square, 100.0);
+            let signals = vec![HeldOutSignal { unbent: left, after: left }];
+            let held_out = HeldOut { signals, ..HeldOut::default() };
+            Findings { held_out, ..Findings::default() }.objection()
         };
         assert!(of(1.4).times < 1.0);
         let loud = of(9.0);
@@ -267,9 +268,9 @@ mod tests {
     #[test]
     fn what_comes_again_and_again_speaks_where_the_mean_is_silent() {
         let evenly = Left::evenly(Generator::ArmStroke(Wheel::Ml), Signal::Stroke, 0.2, 100.0);
-        let left = vec![Left { recurring: 28.0, ..evenly }];
-        let findings = Findings { unbent: left.clone(), after: left, ..Findings::default() };
-        let objection = findings.objection();
+        let left = Left { recurring: 28.0, ..evenly };
+        let signals = vec![SignalFindings::of([left, left])];
+        let objection = Findings { signals, ..Findings::default() }.objection();
         assert!(
             objection.times > 2.0 && objection.why.contains("again and again"),
             "{objection:?}"
@@ -281,10 +282,11 @@ mod tests {
         let of = |after: f64| {
             let left = |floors: f64| {
                 let square = floors * floors;
-                vec![Left::evenly(Generator::Drive, Signal::DrivePressure, square, 100.0)]
+                Left::evenly(Generator::Drive, Signal::DrivePressure, square, 100.0)
             };
-            let held = HeldOut { unbent: left(20.0), after: left(after), ..HeldOut::default() };
-            Findings { held, ..Findings::default() }.objection().times
+            let signals = vec![HeldOutSignal { unbent: left(20.0), after: left(after) }];
+            let held_out = HeldOut { signals, ..HeldOut::default() };
+            Findings { held_out, ..Findings::default() }.objection().times
         };
         assert!(of(12.0) < 1.0 && of(19.0) > 3.0);
     }
@@ -333,8 +335,8 @@ mod tests {
     fn a_vague_cause_that_is_no_longer_believed_excuses_nothing() {
         let of = |name: &str| Candidate::made_up(name, Scope::All, 90.0);
         let times = |pair| {
-            let (single, echoes) = (vec![of("seal-stiction")], vec![echo(60.0)]);
-            Findings { single, pair, echoes, ..Findings::default() }.objection().times
+            let (single, signals) = (vec![of("seal-stiction")], vec![echoing_alone(60.0)]);
+            Findings { single, pair, signals, ..Findings::default() }.objection().times
         };
         assert!(times(Vec::new()) < 1.0);
         assert!(times(vec![[of("arm-delay"), of("payload")]]) > 1.5);

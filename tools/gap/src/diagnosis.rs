@@ -35,6 +35,7 @@ mod search;
 mod signals;
 mod stands;
 mod unshrunk;
+mod vague_laws;
 mod verdict;
 
 pub use agreement::{

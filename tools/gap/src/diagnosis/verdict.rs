@@ -4,6 +4,7 @@ use serde::{Serialize, Serializer};
 use xt28_sim::effects::{Block, Effect, Parameter, Scope};
 
 use super::scales::Grounds;
+use super::vague_laws::size_share;
 
 /// The whole answer to one machine's logs. Serialises to the form of `--json`.
 #[derive(Clone, Debug, Serialize)]
@@ -186,21 +187,15 @@ pub struct Estimate {
 
 /// 5 % lie beyond this many standard deviations on either side.
 const NINETY: f64 = 1.645;
-/// How much wider an interval is than noise alone makes it, and by what share of an effect's size: laws of
-/// machines differ (six in ten intervals held the truth without).
-const WIDER: [f64; 2] = [2.0, 0.05];
-/// That share for [`REMEMBERING`]: what holds an idle wheel comes out 14 % low on one make and 23 % high on another.
-const WIDER_REMEMBERING: f64 = 0.12;
-/// Effects whose law remembers how the machine came to rest, which is in no log, and has another form on each make.
-pub(super) const REMEMBERING: [&str; 2] = ["seal-stiction", "standstill-drag"];
+/// How much wider an interval is than noise alone makes it.
+const WIDER: f64 = 2.0;
 
 impl Estimate {
     /// `value` of a parameter of `effect` that noise leaves uncertain by `sigma`.
     #[must_use]
     pub(super) fn new(effect: &Effect, parameter: &Parameter, value: f64, sigma: f64) -> Self {
-        let remembers = REMEMBERING.contains(&effect.name);
-        let law = if remembers { WIDER_REMEMBERING } else { WIDER[1] };
-        let reach = NINETY * (WIDER[0] * sigma).hypot(law * (value - parameter.neutral));
+        let size = value - parameter.neutral;
+        let reach = NINETY * (WIDER * sigma).hypot(size_share(effect) * size);
         let [low, high] = parameter.range;
         let interval = [(value - reach).max(low), (value + reach).min(high)];
         Self { name: parameter.name, value: [value, interval[0], interval[1]] }

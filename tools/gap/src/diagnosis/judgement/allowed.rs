@@ -4,7 +4,7 @@
 use super::super::evidence::{Echo, Left, Uneven};
 use super::super::floor::Signal;
 use super::super::generator::Generator;
-use super::super::verdict::REMEMBERING;
+use super::super::vague_laws::{controls, vagueness};
 
 /// Share of a gap that a right cause may leave: laws of one name differ from make to make in their
 /// details.
@@ -32,45 +32,6 @@ const JOINT_ECHO: f64 = 0.5;
 
 /// What chance and what correlates make of two sizes on a signal, nats.
 const UNEVEN: f64 = 8.0;
-
-/// Causes whose laws are known less well than others', and by how much.
-struct Vague {
-    effects: &'static [&'static str],
-    /// Where that shows.
-    shows: fn(Generator, Signal) -> bool,
-    /// Share of a gap that they may leave there.
-    share: f64,
-}
-
-/// The causes that are vague, and why. All other laws have one form: a delay is a delay.
-const VAGUE: [Vague; 7] = [
-    Vague { effects: &REMEMBERING, shows: anywhere, share: 0.6 },
-    // How much oil stood where before an accumulator opened is not known.
-    Vague { effects: &["accumulator-gas"], shows: anywhere, share: 0.25 },
-    // What load an arm drifts at, and how fast near it, is each make's own.
-    Vague { effects: &["unsupported-sag"], shows: anywhere, share: 0.15 },
-    // One name for laws of some forms: an edge may be sharp or round, a speed go with a load or its root.
-    Vague {
-        effects: &[
-            "load-dependent-speed",
-            "pump-flow-limit",
-            "lock-damping",
-            "rear-follower-lag",
-            "engine-droop",
-            "slippery-ground",
-            "soft-tyres",
-            "valve-hysteresis",
-        ],
-        shows: anywhere,
-        share: 0.1,
-    },
-    // A leak that is believed a little too slow is a large gap in half a minute.
-    Vague { effects: &["leakage-drift"], shows: anywhere, share: 0.08 },
-    // What pushes the wheels acts between wheel and arm on one make, between wheel and ground on another.
-    Vague { effects: &["rolling-resistance"], shows: weighs, share: 0.35 },
-    // No log says which of a bunch of commands a controller took.
-    Vague { effects: &["command-jitter"], shows: controls, share: 0.6 },
-];
 
 /// What `after` leaves, by what a right answer, which is one of `names` or both, may leave where `before`
 /// was there or, if that is more, squares of `explained` floors on average; about one at most if it is
@@ -124,30 +85,6 @@ pub(super) fn parting(names: &[&str], uneven: &Uneven, evidence: f64) -> f64 {
     let [_, share] = floor_and_share(names, uneven.generator, uneven.signal);
     let share = if uneven.signal == Signal::JointFast { share.max(JOINT_ECHO) } else { share };
     (uneven.nats().min(evidence) / (UNEVEN + share * share * uneven.explained())).sqrt()
-}
-
-/// The share of a gap by which the laws of `names` are vague in `signal`.
-fn vagueness(names: &[&str], generator: Generator, signal: Signal) -> f64 {
-    let vague = VAGUE.iter().filter(|v| v.effects.iter().any(|effect| names.contains(effect)));
-    let here = vague.filter(|vague| (vague.shows)(generator, signal));
-    here.map(|vague| vague.share).fold(0.0, f64::max)
-}
-
-/// Whether makes differ in the form of the law that is called `name`.
-pub(super) fn is_vague(name: &str) -> bool {
-    VAGUE.iter().any(|vague| vague.effects.contains(&name))
-}
-
-fn anywhere(_: Generator, _: Signal) -> bool {
-    true
-}
-
-fn weighs(_: Generator, signal: Signal) -> bool {
-    matches!(signal, Signal::Weight | Signal::WeightX | Signal::WeightY)
-}
-
-fn controls(generator: Generator, _: Signal) -> bool {
-    matches!(generator, Generator::ArmEcu(_) | Generator::SteerEcu(_))
 }
 
 /// Whether the signal is what a controller makes of a command within a tick.
@@ -240,10 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn every_vague_cause_is_in_the_catalogue_and_few_samples_say_nothing() {
-        for effect in VAGUE.iter().flat_map(|vague| vague.effects) {
-            assert!(xt28_sim::effects::find(effect).is_some(), "{effect}");
-        }
+    fn few_samples_say_nothing() {
         let few = Left { samples: 7.0, ..left(Generator::Drive, Signal::DriveForce, 50.0, 50.0) };
         assert!(excess(&[], [&few, &few], 0.0).abs() < f64::EPSILON);
     }

@@ -7,7 +7,8 @@ use super::super::floor::Signal;
 use super::super::generator::Generator;
 use super::super::hypothesis::Fit;
 use super::super::knob::Knob;
-use super::allowed::{echoing, excess, is_vague, parting, recurring};
+use super::super::vague_laws::is_vague;
+use super::allowed::{echoing, excess, parting, recurring};
 use super::{Findings, HeldOut, HeldOutSignal, SignalFindings};
 
 /// Squares of the tolerances' shifts, each by its own, that a right answer may take, all together: what

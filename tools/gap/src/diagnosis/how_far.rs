@@ -42,13 +42,13 @@ pub struct HowFar {
     believed: Effects,
     runs: Vec<PreparedRun>,
     fit: Vec<bool>,
-    before: Gaps,
+    before: HorizonErrors,
 }
 
 /// Squared errors on the judged runs at the three horizons.
 #[derive(Clone, Debug, Default)]
-struct Gaps {
-    ahead: Vec<one_step::Ahead>,
+struct HorizonErrors {
+    ahead: Vec<one_step::OneStepErrors>,
     five_s: Vec<Squares>,
     run: Vec<Squares>,
 }
@@ -75,7 +75,7 @@ impl HowFar {
             believed: inquiry.believed.clone(),
             runs: runs?,
             fit: inquiry.runs.iter().map(|run| run.fit).collect(),
-            before: Gaps::default(),
+            before: HorizonErrors::default(),
         };
         how_far.before = how_far.gaps(&how_far.believed, 0.0);
         Ok(how_far)
@@ -140,9 +140,9 @@ impl HowFar {
         !self.fit[run] || self.fit.iter().all(|fit| *fit)
     }
 
-    fn shrink_of(&self, after: &Gaps) -> Shrink {
+    fn shrink_of(&self, after: &HorizonErrors) -> Shrink {
         let before = &self.before;
-        let steps = |gaps: &Gaps| -> Vec<Squares> {
+        let steps = |gaps: &HorizonErrors| -> Vec<Squares> {
             let runs = gaps.ahead.iter().zip(&before.ahead);
             runs.flat_map(|(ahead, mask)| one_step::squares(ahead, mask)).collect()
         };
@@ -152,7 +152,7 @@ impl HowFar {
         Shrink { one_step, five_s, run, interval: [one, five, whole] }
     }
 
-    fn gaps(&self, effects: &Effects, since_s: f64) -> Gaps {
+    fn gaps(&self, effects: &Effects, since_s: f64) -> HorizonErrors {
         let judged: Vec<&PreparedRun> =
             (0..self.runs.len()).filter(|&k| self.judges(k)).map(|k| &self.runs[k]).collect();
         let ahead = |prepared: &&PreparedRun| {
@@ -165,7 +165,7 @@ impl HowFar {
             || (judged.par_iter().map(ahead).collect(), squares(Horizon::FiveSeconds)),
             || squares(Horizon::Run),
         );
-        Gaps { ahead, five_s, run }
+        HorizonErrors { ahead, five_s, run }
     }
 
     /// Squared errors on the runs that `of` names, in order; with `effects` from `since_s` on.

@@ -42,8 +42,8 @@ pub fn next_drive(
     let runs = inquiry.runs.iter().filter(|run| run.fit).map(|run| run.signals.clone());
     let runs: Vec<Signals> = runs.collect();
     let temperature = temperature(diagnosis.grounds.evidence_nats);
-    let ground = Ground::new(inquiry, &runs, (&base, &rivals), temperature);
-    let worth = |manoeuvre: Manoeuvre| Ok((ground.worth(&manoeuvre)?, manoeuvre));
+    let footing = Footing::new(inquiry, &runs, (&base, &rivals), temperature);
+    let worth = |manoeuvre: Manoeuvre| Ok((footing.worth(&manoeuvre)?, manoeuvre));
     let mut ranked: Vec<(f64, Manoeuvre)> =
         not_made(inquiry).into_par_iter().map(worth).collect::<Result<_, GapError>>()?;
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -89,7 +89,7 @@ pub(crate) fn scripted_drive(name: &str) -> Option<FieldLog> {
 }
 
 /// What the rivals stand on: the runs fitted, with what each rival costs there.
-struct Ground<'a> {
+struct Footing<'a> {
     inquiry: &'a Inquiry,
     rivals: &'a [Rival],
     base: &'a Effects,
@@ -100,7 +100,7 @@ struct Ground<'a> {
     temperature: f64,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> Footing<'a> {
     fn new(
         inquiry: &'a Inquiry,
         driven: &'a [Signals],

@@ -60,7 +60,7 @@ pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<RegimeGaps> {
                 let machine = &inquiry.machine;
                 pair.before.iter().flat_map(move |residual| {
                     residual.values.iter().enumerate().filter_map(move |(k, value)| {
-                        let at = Instant { signals, machine, wheel, usual_n, i: instant(k) };
+                        let at = Moment { signals, machine, wheel, usual_n, i: instant(k) };
                         let within = regime.is_none_or(|regime| at.is(regime));
                         within.then_some(*value)
                     })
@@ -91,7 +91,7 @@ fn usual_load_n(inquiry: &Inquiry, wheel: Wheel) -> f64 {
 }
 
 /// A moment of one log, as one generator sees it.
-struct Instant<'a> {
+struct Moment<'a> {
     signals: &'a Signals,
     machine: &'a Machine,
     /// The wheel whose arm the generator drives.
@@ -102,7 +102,7 @@ struct Instant<'a> {
     i: usize,
 }
 
-impl Instant<'_> {
+impl Moment<'_> {
     /// Whether the machine is in a regime, by its place in [`REGIMES`].
     fn is(&self, regime: usize) -> bool {
         if self.i >= self.signals.len {

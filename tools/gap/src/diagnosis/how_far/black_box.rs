@@ -17,7 +17,7 @@ use super::law::{Known, Law, Normal, scales};
 use super::machine_sample::{Horizon, MachineSample, Quantity, TICKS_PER_SAMPLE, WIDTH, floors};
 use super::squares::{self, BLOCK, Squares};
 use super::twin::{Forecast, PreparedRun};
-use super::{Gaps, HowFar};
+use super::{HorizonErrors, HowFar};
 use crate::diagnosis::signals::Signals;
 use crate::diagnosis::verdict::Shrink;
 
@@ -69,7 +69,7 @@ impl HowFar {
             judged.flat_map(|lesson| learnt.left(lesson)).collect()
         };
         let [five_s, run] = [Horizon::FiveSeconds, Horizon::Run].map(left);
-        self.shrink_of(&Gaps { ahead: self.free_steps(), five_s, run })
+        self.shrink_of(&HorizonErrors { ahead: self.free_steps(), five_s, run })
     }
 }
 
@@ -151,13 +151,13 @@ impl Lesson {
 }
 
 /// What goes into a fit: samples of lessons with their inputs, added up once for all ridges.
-struct Fit {
+struct Regression {
     inputs: Vec<DVector<f64>>,
     normal: Normal,
     reach: MachineSample,
 }
 
-impl Fit {
+impl Regression {
     fn of(
         lessons: &[&Lesson],
         scale: &DVector<f64>,
@@ -225,7 +225,7 @@ impl Learnt {
             .collect();
         let scale = scales(all.iter());
         let left = |fold: &Fold| {
-            let fit = Fit::of(lessons, &scale, |run, sample| fold.fits(run, sample));
+            let fit = Regression::of(lessons, &scale, |run, sample| fold.fits(run, sample));
             let of = |ridge: f64| {
                 let model = fit.model(ridge);
                 let blocks: Vec<Squares> = lessons
@@ -238,7 +238,8 @@ impl Learnt {
         };
         let folds = folds::folds(&runs(lessons));
         let by_fold: Vec<[f64; RIDGES.len()]> = folds.par_iter().map(left).collect();
-        let model = Fit::of(lessons, &scale, |_, _| true).model(folds::choose(&by_fold, &folds));
+        let model =
+            Regression::of(lessons, &scale, |_, _| true).model(folds::choose(&by_fold, &folds));
         Self { scale, model }
     }
 

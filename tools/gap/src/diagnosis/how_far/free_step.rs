@@ -13,13 +13,13 @@ use super::black_box::commands;
 use super::folds::{self, Fold, RIDGES};
 use super::law::{Known, Law, Normal, scales};
 use super::machine_sample::{Horizon, Quantity, WIDTH, floors};
-use super::one_step::{self, Ahead};
+use super::one_step::{self, OneStepErrors};
 use super::twin::PreparedRun;
 
 /// Errors and inputs of one run, sample by sample.
 struct Lesson {
     run: usize,
-    ahead: Ahead,
+    ahead: OneStepErrors,
     inputs: Vec<DVector<f64>>,
 }
 
@@ -40,7 +40,7 @@ struct Model {
 
 impl HowFar {
     /// What a free model leaves of the blocks' errors on the judged runs.
-    pub(super) fn free_steps(&self) -> Vec<Ahead> {
+    pub(super) fn free_steps(&self) -> Vec<OneStepErrors> {
         let of = |(run, prepared): (usize, &PreparedRun)| {
             let ahead = one_step::ahead(&prepared.signals, &self.machine, &self.believed);
             Lesson { run, ahead, inputs: inputs(prepared) }
@@ -55,7 +55,7 @@ fn left(
     mut lessons: Vec<Lesson>,
     fits: impl Fn(usize) -> bool,
     judges: impl Fn(usize) -> bool,
-) -> Vec<Ahead> {
+) -> Vec<OneStepErrors> {
     let fitted = lessons.iter().filter(|lesson| fits(lesson.run));
     let scale = scales(fitted.flat_map(|lesson| &lesson.inputs));
     for inputs in lessons.iter_mut().flat_map(|lesson| &mut lesson.inputs) {

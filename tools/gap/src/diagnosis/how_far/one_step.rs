@@ -14,7 +14,7 @@ use crate::diagnosis::generator::{Generator, Residual, STEP_S};
 use crate::diagnosis::signals::Signals;
 
 /// What every block's signal lacks a tenth of a second ahead, in floors; `NaN` where nothing can be said.
-pub(super) type Ahead = Vec<(Signal, Vec<f64>)>;
+pub(super) type OneStepErrors = Vec<(Signal, Vec<f64>)>;
 
 /// Whether a block adds this signal up over time.
 const fn adds_up(signal: Signal) -> bool {
@@ -22,7 +22,7 @@ const fn adds_up(signal: Signal) -> bool {
 }
 
 /// What each block's signal lacks on one run.
-pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> Ahead {
+pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> OneStepErrors {
     let of = |residual: Residual| {
         let Residual { signal, mut values, .. } = residual;
         if adds_up(signal) {
@@ -41,7 +41,11 @@ pub(super) fn ahead(s: &Signals, machine: &Machine, effects: &Effects) -> Ahead 
 
 /// `before` until `since_s`, `after` from then on.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-pub(super) fn splice(before: Ahead, mut after: Ahead, since_s: f64) -> Ahead {
+pub(super) fn splice(
+    before: OneStepErrors,
+    mut after: OneStepErrors,
+    since_s: f64,
+) -> OneStepErrors {
     let since = (since_s / STEP_S).ceil() as usize;
     for ((_, after), (_, before)) in after.iter_mut().zip(before) {
         let until = since.min(after.len()).min(before.len());
@@ -53,7 +57,7 @@ pub(super) fn splice(before: Ahead, mut after: Ahead, since_s: f64) -> Ahead {
 /// Squares of several residuals, those of the wheels' speeds taken together and those of their touch. Two that differ in what can be
 /// judged are made alike by `mask`, whose own gaps count.
 #[allow(clippy::ptr_arg)] // The name says more than a slice of pairs.
-pub(super) fn squares(ahead: &Ahead, mask: &Ahead) -> Vec<Squares> {
+pub(super) fn squares(ahead: &OneStepErrors, mask: &OneStepErrors) -> Vec<Squares> {
     let kind = |signal: &Signal| match signal {
         Signal::WheelSpeed(_) => Signal::WheelSpeed(Wheel::Fr),
         Signal::Contact(_) => Signal::Contact(Wheel::Fr),

@@ -29,7 +29,7 @@ pub(super) struct Rival {
 }
 
 /// A cause at some wheels, and how likely it is to be there.
-struct Place<'a> {
+struct CauseAt<'a> {
     cause: &'a Cause,
     scope: Scope,
     values: Vec<f64>,
@@ -52,14 +52,14 @@ pub(super) fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> (Effects, Vec<
         return (base, Vec::new());
     }
     for other in stood.iter().filter(|cause| cause.effect != leader.effect) {
-        Place::likeliest(other).apply(&mut base);
+        CauseAt::likeliest(other).apply(&mut base);
     }
     let others = diagnosis.causes.iter().filter(|cause| {
         let stands = stood.iter().any(|stood| stood.effect == cause.effect);
         !stands && cause.effect != leader.effect
     });
-    let mut places = Place::all(leader);
-    places.extend(others.map(Place::likeliest));
+    let mut places = CauseAt::all(leader);
+    places.extend(others.map(CauseAt::likeliest));
     places.retain(|place| place.probability >= WORTH_TELLING);
     places.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     places.truncate(RIVALS);
@@ -71,7 +71,7 @@ pub(super) fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> (Effects, Vec<
     (base, rivals)
 }
 
-impl<'a> Place<'a> {
+impl<'a> CauseAt<'a> {
     /// A cause at the wheels at which it is told.
     fn likeliest(cause: &'a Cause) -> Self {
         let values = cause.parameters.iter().map(|estimate| estimate.value[0]).collect();

@@ -161,19 +161,29 @@ fn what_a_message_held_while_it_was_away_is_not_taken_for_measured() {
         let output = xt28(&["gap", "where", log, "--dbc", DBC]);
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    let (_folder, log) = changed(|at_s, rest| {
-        let is_there = !(6.0..8.0).contains(&at_s) || !rest.contains(&id);
-        is_there.then(|| (at_s, rest.to_owned()))
-    });
-    let (status, talk) = where_of(&log);
+    let away = |id: &str, from_s: f64, to_s: f64| {
+        let (_folder, log) = changed(|at_s, rest| {
+            let is_there = !(from_s..to_s).contains(&at_s) || !rest.contains(id);
+            is_there.then(|| (at_s, rest.to_owned()))
+        });
+        where_of(&log)
+    };
+    let (status, talk) = away(&id, 6.0, 8.0);
     assert_ne!(status, Some(2), "{talk}");
+    assert!(!talk.contains("held") && !talk.contains("missing"), "it is left out: {talk}");
     assert!(talk.contains("stroke.FR is away from 6.0 to 8.0 s of a log of 10.0 s"), "{talk}");
     assert!(talk.contains("only 0.0 to 6.0 s of it are looked at"), "{talk}");
+    let (_, talk) = away(&id, 6.0, 6.5);
+    assert!(talk.contains("PosFront is missing") && talk.contains(", from 6.0"), "{talk}");
+    assert!(talk.contains("the value before is held") && !talk.contains("looked at"), "{talk}");
+    let (_, talk) = away(&format!(" {}#", self::id("PressMid")), 3.0, 7.0);
+    assert!(talk.contains("looked at without") && !talk.contains("is held"), "{talk}");
     // The logger paused, or its clock went ahead: one cannot tell which.
     let (_folder, log) =
         changed(|at_s, rest| Some((if at_s > 3.0 { at_s + 0.3 } else { at_s }, rest.to_owned())));
     let (_, talk) = where_of(&log);
     assert!(talk.contains("nothing was logged from 3.00 to 3.3"), "{talk}");
+    assert!(!talk.contains("held") && !talk.contains("missing"), "it is left out: {talk}");
     assert!(talk.contains("only 3.3 to 10.3 s of it are looked at"), "{talk}");
 }
 

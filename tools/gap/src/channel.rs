@@ -197,6 +197,11 @@ impl Channel {
         }
     }
 
+    /// True for what a receiver says: a fix is where the machine was then, and no longer.
+    pub(crate) const fn is_fix(self) -> bool {
+        matches!(self, Self::East | Self::North | Self::Heading)
+    }
+
     /// True for what the gateway commands, false for what the machine measures.
     #[must_use]
     pub const fn is_command(self) -> bool {

@@ -120,6 +120,32 @@ fn a_log_without_wheel_loads_is_looked_at_as_one_with_them() {
     assert_eq!(without.stdout, with.stdout);
 }
 
+/// No block is driven by it; a replay's machine would not move without.
+#[test]
+fn a_database_without_enable_is_diagnosed_as_one_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dbc, json) = (path(folder.path(), "own.dbc"), path(folder.path(), "a.json"));
+    let text = fs::read_to_string(DBC).unwrap();
+    let without: Vec<&str> = text.lines().filter(|line| !line.contains(" Enable ")).collect();
+    assert!(without.len() < text.lines().count());
+    fs::write(&dbc, without.join("\n") + "\n").unwrap();
+    let answer = |dbc: &str| {
+        let output =
+            xt28(&["gap", "diagnose", &log(), "--dbc", dbc, "--no-how-far", "--json", &json]);
+        assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+        let answer = fs::read_to_string(&json).unwrap();
+        // The time that it took is the last line, but for the brace.
+        let (answer, seconds) = answer.rsplit_once(',').unwrap();
+        assert!(seconds.contains("\"seconds\""), "{seconds}");
+        answer.to_owned()
+    };
+    assert_eq!(answer(&dbc), answer(DBC));
+    let output = xt28(&["replay", &log(), "--dbc", &dbc]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("a replay needs target.enable, and log or DBC has none"), "{talk}");
+}
+
 #[test]
 fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     let heard_of = |message: &str, from_s: f64, to_s: f64| {

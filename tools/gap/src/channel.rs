@@ -178,7 +178,7 @@ impl Channel {
         }
     }
 
-    /// Whether a replay can do without it.
+    /// Whether a diagnosis and a replay alike can do without it.
     #[must_use]
     pub const fn need(self) -> Need {
         match self {
@@ -191,8 +191,7 @@ impl Channel {
             | Self::TargetStroke(_)
             | Self::ArmMode
             | Self::Throttle
-            | Self::TargetJoint
-            | Self::Enable => Need::Required,
+            | Self::TargetJoint => Need::Required,
             _ => Need::Optional,
         }
     }

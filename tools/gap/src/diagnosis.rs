@@ -38,7 +38,7 @@ mod unshrunk;
 mod verdict;
 
 pub use agreement::{
-    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, StrokeScale, Swap,
+    AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale, Swap,
     SwappedChambers, WheelScale, ensure_agreeing, swapped_wheels,
 };
 pub(crate) use agreement::{ensure_motions_agreeing, ensure_pressures_agreeing};

@@ -200,7 +200,10 @@ fn what_a_message_held_while_it_was_away_is_not_taken_for_measured() {
     assert!(talk.contains("stroke.FR is away from 6.0 to 8.0 s of a log of 10.0 s"), "{talk}");
     assert!(talk.contains("only 0.0 to 6.0 s of it are looked at"), "{talk}");
     let (_, talk) = away(&id, 6.0, 6.5);
-    assert!(talk.contains("PosFront is missing") && talk.contains(", from 6.0"), "{talk}");
+    assert!(
+        talk.contains("PosFront is missing") && talk.contains(", from 5.99 to 6.50 s"),
+        "{talk}"
+    );
     assert!(talk.contains("the value before is held") && !talk.contains("looked at"), "{talk}");
     let (_, talk) = away(&format!(" {}#", self::id("PressMid")), 3.0, 7.0);
     assert!(talk.contains("looked at without") && !talk.contains("is held"), "{talk}");

@@ -33,6 +33,7 @@ fn an_answer_comes_as_text_json_report_and_overlay() {
     assert!(words.contains("probability  cause"), "{words}\n{talk}");
     assert!(words.contains("Fitted on short.log; held out: none"), "{words}");
     assert!(words.contains("taken as driven on level ground"), "{words}");
+    assert_eq!(words.matches("foretold").count(), 1, "it is told once: {words}");
     let answer: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
     let verdict = answer["verdict"].as_str().unwrap();
@@ -45,6 +46,9 @@ fn an_answer_comes_as_text_json_report_and_overlay() {
     let report = fs::read_to_string(&report).unwrap();
     assert!(report.starts_with("<!DOCTYPE html>") && report.ends_with("</html>\n"));
     assert!(report.contains("short.log"));
+    assert_eq!(report.matches("nothing was foretold").count(), 1);
+    let is_held = |note: &&serde_json::Value| note.as_str().unwrap().contains("held out");
+    assert_eq!(answer["notes"].as_array().unwrap().iter().filter(is_held).count(), 1);
     // Another command takes the causes found.
     let output = xt28(&["run", "straight-25m", "--effects", &overlay, "--solver", "reduced"]);
     assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));

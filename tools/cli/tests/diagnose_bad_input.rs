@@ -120,6 +120,32 @@ fn a_log_without_wheel_loads_is_looked_at_as_one_with_them() {
     assert_eq!(without.stdout, with.stdout);
 }
 
+/// No block is driven by it; a replay's machine would not move without.
+#[test]
+fn a_database_without_enable_is_diagnosed_as_one_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dbc, json) = (path(folder.path(), "own.dbc"), path(folder.path(), "a.json"));
+    let text = fs::read_to_string(DBC).unwrap();
+    let without: Vec<&str> = text.lines().filter(|line| !line.contains(" Enable ")).collect();
+    assert!(without.len() < text.lines().count());
+    fs::write(&dbc, without.join("\n") + "\n").unwrap();
+    let answer = |dbc: &str| {
+        let output =
+            xt28(&["gap", "diagnose", &log(), "--dbc", dbc, "--no-how-far", "--json", &json]);
+        assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));
+        let answer = fs::read_to_string(&json).unwrap();
+        // The time that it took is the last line, but for the brace.
+        let (answer, seconds) = answer.rsplit_once(',').unwrap();
+        assert!(seconds.contains("\"seconds\""), "{seconds}");
+        answer.to_owned()
+    };
+    assert_eq!(answer(&dbc), answer(DBC));
+    let output = xt28(&["replay", &log(), "--dbc", &dbc]);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("a replay needs target.enable, and log or DBC has none"), "{talk}");
+}
+
 #[test]
 fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     let heard_of = |message: &str, from_s: f64, to_s: f64| {
@@ -161,19 +187,32 @@ fn what_a_message_held_while_it_was_away_is_not_taken_for_measured() {
         let output = xt28(&["gap", "where", log, "--dbc", DBC]);
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    let (_folder, log) = changed(|at_s, rest| {
-        let is_there = !(6.0..8.0).contains(&at_s) || !rest.contains(&id);
-        is_there.then(|| (at_s, rest.to_owned()))
-    });
-    let (status, talk) = where_of(&log);
+    let away = |id: &str, from_s: f64, to_s: f64| {
+        let (_folder, log) = changed(|at_s, rest| {
+            let is_there = !(from_s..to_s).contains(&at_s) || !rest.contains(id);
+            is_there.then(|| (at_s, rest.to_owned()))
+        });
+        where_of(&log)
+    };
+    let (status, talk) = away(&id, 6.0, 8.0);
     assert_ne!(status, Some(2), "{talk}");
+    assert!(!talk.contains("held") && !talk.contains("missing"), "it is left out: {talk}");
     assert!(talk.contains("stroke.FR is away from 6.0 to 8.0 s of a log of 10.0 s"), "{talk}");
     assert!(talk.contains("only 0.0 to 6.0 s of it are looked at"), "{talk}");
+    let (_, talk) = away(&id, 6.0, 6.5);
+    assert!(
+        talk.contains("PosFront is missing") && talk.contains(", from 5.99 to 6.50 s"),
+        "{talk}"
+    );
+    assert!(talk.contains("the value before is held") && !talk.contains("looked at"), "{talk}");
+    let (_, talk) = away(&format!(" {}#", self::id("PressMid")), 3.0, 7.0);
+    assert!(talk.contains("looked at without") && !talk.contains("is held"), "{talk}");
     // The logger paused, or its clock went ahead: one cannot tell which.
     let (_folder, log) =
         changed(|at_s, rest| Some((if at_s > 3.0 { at_s + 0.3 } else { at_s }, rest.to_owned())));
     let (_, talk) = where_of(&log);
     assert!(talk.contains("nothing was logged from 3.00 to 3.3"), "{talk}");
+    assert!(!talk.contains("held") && !talk.contains("missing"), "it is left out: {talk}");
     assert!(talk.contains("only 3.3 to 10.3 s of it are looked at"), "{talk}");
 }
 

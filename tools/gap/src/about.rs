@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
+use toml::value::Datetime;
 use xt28_sim::{Ramp, Terrain};
 
 use crate::GapError;
@@ -14,7 +15,8 @@ use crate::toml_error::locate;
 pub struct About {
     /// Name of the case.
     pub case: String,
-    /// Day of the runs, as written.
+    /// Day of the runs, as written: a date, or words.
+    #[serde(default, deserialize_with = "day")]
     pub date: Option<String>,
     /// The machine, in words.
     pub machine: Option<String>,
@@ -155,6 +157,28 @@ impl Run {
     }
 }
 
+/// A day that TOML knows for one, or in words.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "`date` is neither a date, as 2026-05-14, nor words in quotes, as \"14 May\""
+)]
+enum Day {
+    Date(Datetime),
+    Words(String),
+}
+
+/// Reads a day; of a time of day alone nobody knows which day it was.
+fn day<'de, D: Deserializer<'de>>(from: D) -> Result<Option<String>, D::Error> {
+    match Day::deserialize(from)? {
+        Day::Date(date) if date.date.is_none() => Err(serde::de::Error::custom(format!(
+            "`date` is the time of day {date}, and of which day? write a date, as 2026-05-14"
+        ))),
+        Day::Date(date) => Ok(Some(date.to_string())),
+        Day::Words(words) => Ok(Some(words)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -213,6 +237,28 @@ ramp = { x_m = [4, 7, 8.5, 11.5], height_m = 0.3, y_min_m = -1.9, y_max_m = -0.5
         let twice = ABOUT.replace("ramp.log\"", "flat.log.gz\"");
         let error = parse(&twice).unwrap_err().to_string();
         assert!(error.starts_with("about.toml:9: run flat.log.gz is described twice"), "{error}");
+    }
+
+    #[test]
+    fn a_date_may_be_one_of_toml_or_words_and_nothing_else() {
+        let with = |date: &str| parse(&ABOUT.replace("dbc =", &format!("date = {date}\ndbc =")));
+        for (date, told) in [
+            ("2026-05-03", "2026-05-03"),
+            ("2026-05-03T07:32:00Z", "2026-05-03T07:32:00Z"),
+            ("\"3 May\"", "3 May"),
+        ] {
+            assert_eq!(with(date).unwrap().date.as_deref(), Some(told));
+        }
+        assert_eq!(parse(ABOUT).unwrap().date, None);
+        for (date, told) in
+            [("3", "neither a date"), ("[2026]", "neither"), ("07:32:00", "of which day")]
+        {
+            let error = with(date).unwrap_err().to_string();
+            assert!(
+                error.starts_with("about.toml:3: `date` is") && error.contains(told),
+                "{error}"
+            );
+        }
     }
 
     proptest! {

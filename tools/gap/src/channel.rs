@@ -178,7 +178,7 @@ impl Channel {
         }
     }
 
-    /// Whether a replay can do without it.
+    /// Whether a diagnosis and a replay alike can do without it.
     #[must_use]
     pub const fn need(self) -> Need {
         match self {
@@ -191,10 +191,14 @@ impl Channel {
             | Self::TargetStroke(_)
             | Self::ArmMode
             | Self::Throttle
-            | Self::TargetJoint
-            | Self::Enable => Need::Required,
+            | Self::TargetJoint => Need::Required,
             _ => Need::Optional,
         }
+    }
+
+    /// True for what a receiver says: a fix is where the machine was then, and no longer.
+    pub(crate) const fn is_fix(self) -> bool {
+        matches!(self, Self::East | Self::North | Self::Heading)
     }
 
     /// True for what the gateway commands, false for what the machine measures.

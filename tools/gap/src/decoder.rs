@@ -91,7 +91,7 @@ impl Decoder {
     }
 }
 
-/// Where the database has `channel`; `None` for one that nobody asked for and no replay needs.
+/// Where the database has `channel`; `None` for one that nobody asked for and that can be done without.
 fn find<'a>(
     database: &'a Database,
     path: &Path,

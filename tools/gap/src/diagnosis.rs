@@ -39,7 +39,7 @@ mod vague_laws;
 mod verdict;
 
 pub use agreement::{
-    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, StrokeScale, Swap,
+    AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale, Swap,
     SwappedChambers, WheelScale, ensure_agreeing, swapped_wheels,
 };
 pub(crate) use agreement::{ensure_motions_agreeing, ensure_pressures_agreeing};

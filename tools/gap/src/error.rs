@@ -216,6 +216,16 @@ pub enum GapError {
         /// Names of the channels.
         channels: String,
     },
+    /// The log lacks what only a replay needs.
+    #[error(
+        "{log}: a replay needs {channel}, and log or DBC has none; record it too, or say with --mapping what it is called"
+    )]
+    Undriven {
+        /// The log.
+        log: String,
+        /// The channel.
+        channel: String,
+    },
     /// There is too little of a log.
     #[error(
         "{log}: {duration_s:.2} s long, and a diagnosis needs {least_s:.0} s of one run; leave it out or record longer"

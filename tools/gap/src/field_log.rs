@@ -21,8 +21,10 @@ use xt28_bus::candump::Reader;
 use crate::log_fault::{each_told, told};
 use crate::recorded::{self, MAGIC};
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Series};
+pub use gaps::Gap;
 use gzip::{Failed, Gzip};
 use intake::Intake;
+use thinned::is_thinned;
 
 /// A clock that goes ahead by more leaves two logs in one file, and which is meant is not for us to say.
 const AHEAD_MAX_S: f64 = 1.0;
@@ -84,17 +86,31 @@ impl FieldLog {
         intake.finish(&name, decoder)
     }
 
-    /// What it holds between two instants, with the first of them as zero; what is wrong with the whole of
-    /// it stays said.
+    /// What it holds between two instants, with the first of them as zero, and what is wrong with that; of faults
+    /// that have no time what is wrong with the whole of it.
     #[must_use]
     pub fn within(self, span_s: [f64; 2]) -> Self {
         let cut = |channel: &Channel, all: &Series| {
-            // A fix is where the machine was then, and no longer.
-            let is_fix = matches!(channel, Channel::East | Channel::North | Channel::Heading);
-            if is_fix { all.told_within(span_s) } else { all.within(span_s) }
+            if channel.is_fix() { all.told_within(span_s) } else { all.within(span_s) }
         };
         let series = self.series.iter().map(|(channel, all)| (*channel, cut(channel, all)));
-        Self { series: series.collect(), duration_s: span_s[1] - span_s[0], ..self }
+        let duration_s = span_s[1] - span_s[0];
+        let share = duration_s / self.duration_s;
+        let faults: Vec<LogFault> =
+            self.faults.iter().filter_map(|fault| fault.within(span_s, share)).collect();
+        let [before, lost] = [&self.faults, &faults].map(|faults| losses(faults));
+        let is_thinned = self.is_thinned && lost.len() == before.len() && is_thinned(&lost);
+        Self { series: series.collect(), duration_s, faults, is_thinned, ..self }
+    }
+
+    /// The same without a word on what `messages` lost, where nothing is read of them.
+    #[must_use]
+    pub(crate) fn without_losses_of(mut self, messages: &[&str]) -> Self {
+        self.faults.retain(|fault| match &fault.kind {
+            FaultKind::Dropped { message, .. } => !messages.contains(&message.as_str()),
+            _ => true,
+        });
+        self
     }
 
     /// The same without some channels, as if nobody had logged them.
@@ -256,4 +272,15 @@ impl FieldLog {
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
+}
+
+/// Frames that each message lost, and of how many, where it lost any.
+fn losses(faults: &[LogFault]) -> Vec<[u64; 2]> {
+    let of = |fault: &LogFault| match &fault.kind {
+        FaultKind::Dropped { gaps, due, .. } => {
+            Some([gaps.iter().map(|gap| gap.frames).sum(), *due])
+        }
+        _ => None,
+    };
+    faults.iter().filter_map(of).collect()
 }

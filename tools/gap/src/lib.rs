@@ -41,7 +41,7 @@ pub use decoder::Decoder;
 pub use dimension::Dimension;
 pub use error::{Disagreement, GapError};
 pub use errors_between::Errors;
-pub use field_log::FieldLog;
+pub use field_log::{FieldLog, Gap};
 pub use log_fault::{FaultKind, LogFault};
 pub use mapping::{Mapping, Source};
 pub use replay::Replay;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use xt28_bus::candump::Skipped;
 
+use crate::Gap;
 pub(crate) use told::{each_told, told};
 
 /// Something a reader of the result must know of its log. Displays as one line with file and line.
@@ -48,6 +49,8 @@ pub enum FaultKind {
         by_s: f64,
         /// How often.
         times: u64,
+        /// From when to when, each, s from the log's first frame.
+        pauses_s: Vec<[f64; 2]>,
     },
     /// Messages of a recording are no CAN frames, though of their type; they are left out.
     Broken {
@@ -60,14 +63,12 @@ pub enum FaultKind {
     Dropped {
         /// Message.
         message: String,
-        /// Times the message was away for more than one and a half periods.
-        gaps: u64,
-        /// Periods without a frame, over all gaps.
-        frames: u64,
-        /// Frames that should be there, those included.
+        /// Each time that the message was away for more than one and a half periods.
+        gaps: Vec<Gap>,
+        /// Frames that should be there, those that would have filled the gaps included.
         due: u64,
-        /// The longest time without, s.
-        longest_s: f64,
+        /// Whether the value before stands in for what is missing; a fix does not.
+        is_held: bool,
     },
     /// Frames of a cyclic message are there more than once; the repeats are left out.
     Repeated {
@@ -146,6 +147,63 @@ pub enum FaultKind {
     },
 }
 
+/// Frames that would have filled `gaps`.
+fn frames_of(gaps: &[Gap]) -> u64 {
+    gaps.iter().map(|gap| gap.frames).sum()
+}
+
+/// What `message` lacks, and what stands in for it.
+fn dropped(message: &str, gaps: &[Gap], is_held: bool) -> String {
+    let (frames, times) = (frames_of(gaps), gaps.len());
+    let s = if times == 1 { "" } else { "s" };
+    let longest = longest_told(gaps);
+    let meanwhile = if is_held { "the value before is held" } else { "nothing stands in for them" };
+    format!(
+        "{message} is missing {frames} frames in {times} gap{s} from here on, the longest {longest}; {meanwhile}"
+    )
+}
+
+/// The longest of `gaps`, with when that is.
+fn longest_told<'a>(gaps: impl IntoIterator<Item = &'a Gap>) -> String {
+    let longest = gaps.into_iter().max_by(|a, b| a.length_s().total_cmp(&b.length_s()));
+    longest.map_or_else(String::new, |gap| {
+        let [from_s, to_s] = gap.span_s;
+        format!("{:.1} ms, from {from_s:.2} to {to_s:.2} s", gap.length_s() * 1e3)
+    })
+}
+
+impl LogFault {
+    /// What of it is in a part of its log, which is this share of the whole; `None` where nothing is. What has no
+    /// time is everywhere.
+    pub(crate) fn within(&self, [from_s, to_s]: [f64; 2], share: f64) -> Option<Self> {
+        let is_in = |[begins_s, ends_s]: [f64; 2]| begins_s < to_s && ends_s > from_s;
+        match &self.kind {
+            FaultKind::Dropped { message, gaps, due, is_held } => {
+                let gaps = gaps.iter().filter_map(|gap| gap.within([from_s, to_s]));
+                let gaps: Vec<Gap> = gaps.collect();
+                let line = gaps.first()?.line;
+                // It comes as often all along.
+                #[allow(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    clippy::cast_precision_loss
+                )]
+                let due = (share * *due as f64).round() as u64;
+                let (due, message) = (due.max(frames_of(&gaps)), message.clone());
+                let kind = FaultKind::Dropped { message, gaps, due, is_held: *is_held };
+                Some(Self { line, kind, ..self.clone() })
+            }
+            FaultKind::ClockAhead { pauses_s, .. } => {
+                pauses_s.iter().any(|pause_s| is_in(*pause_s)).then(|| self.clone())
+            }
+            FaultKind::Frozen { from_s: stands_s, to_s: until_s, .. } => {
+                is_in([*stands_s, *until_s]).then(|| self.clone())
+            }
+            _ => Some(self.clone()),
+        }
+    }
+}
+
 impl FaultKind {
     pub(crate) const fn passed_over(skipped: Skipped) -> Self {
         Self::PassedOver { remote: skipped.remote, error: skipped.error, fd: skipped.fd }
@@ -189,19 +247,16 @@ impl fmt::Display for LogFault {
                 f,
                 "clock jumps back by {by_s:.6} s; {frames} frames are left out until it has caught up, so cut the log there if they matter"
             ),
-            FaultKind::ClockAhead { by_s, times } => write!(
+            FaultKind::ClockAhead { by_s, times, .. } => write!(
                 f,
                 "no frame of any kind for {by_s:.3} s before this line, {times} times so in this log; the values before are held, so cut the log there if the clock jumped"
             ),
             FaultKind::Broken { problem, messages } => {
                 write!(f, "no CAN frame: {problem}; {messages} such messages are left out")
             }
-            FaultKind::Dropped { message, gaps, frames, longest_s, .. } => write!(
-                f,
-                "{message} is missing {frames} frames in {gaps} gap{} from here on, the longest {:.1} ms; the value before is held",
-                if *gaps == 1 { "" } else { "s" },
-                longest_s * 1e3
-            ),
+            FaultKind::Dropped { message, gaps, is_held, .. } => {
+                write!(f, "{}", dropped(message, gaps, *is_held))
+            }
             FaultKind::Repeated { message, frames, of } => write!(
                 f,
                 "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"

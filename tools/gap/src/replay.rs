@@ -48,7 +48,7 @@ impl Replay {
     ///
     /// # Errors
     /// [`GapError::Command`] for a command that our bus cannot say; [`GapError::ClockSteps`] where the
-    /// log's clock leaps ahead.
+    /// log's clock leaps ahead; [`GapError::Undriven`].
     pub fn run(
         log: &FieldLog,
         machine: &Machine,
@@ -57,6 +57,7 @@ impl Replay {
         terrain: &Terrain,
     ) -> Result<Self, GapError> {
         steady(log)?;
+        drivable(log)?;
         let commands = commands(log, machine.drive.engine_speed_rpm)?;
         let first = |channel| log.series(channel).and_then(|s| s.iter().next()).map(|(_, v)| v);
         // Strokes are logged in whole millimetres, cut off: the middle of the step is meant.
@@ -133,6 +134,15 @@ fn steady(log: &FieldLog) -> Result<(), GapError> {
     leap.map_or(Ok(()), |(line, by_s)| {
         Err(GapError::ClockSteps { log: log.name().to_owned(), line, by_s })
     })
+}
+
+/// Refuses a log that does not say whether the drive is enabled: ours stands still until it is told so.
+fn drivable(log: &FieldLog) -> Result<(), GapError> {
+    let channel = Channel::Enable;
+    let is_told = log.series(channel).is_some_and(|series| !series.is_empty());
+    let undriven =
+        || GapError::Undriven { log: log.name().to_owned(), channel: channel.to_string() };
+    if is_told { Ok(()) } else { Err(undriven()) }
 }
 
 impl<'a> Bench<'a> {

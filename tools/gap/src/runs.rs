@@ -98,7 +98,7 @@ impl RunSet {
                 (Some(about), Some(file), Some(run)) => claims::denied(about, file, run, &log),
                 _ => Vec::new(),
             };
-            let (log, left_out) = attended(log);
+            let (log, left_out) = attended(log, decoder);
             soundness::check(&log, decoder)?;
             let run = KnownRun {
                 file,

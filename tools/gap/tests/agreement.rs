@@ -132,6 +132,46 @@ fn one_wheel_of_another_sign_or_scale_is_told_by_its_name_and_so_are_all_six_tur
     assert!(all.unwrap_err().contains("sign of the wheel speeds"));
 }
 
+/// All that is read of wheels and told to them, in drives that tell both sides alike.
+#[test]
+fn left_and_right_exchanged_are_told_where_the_machine_bends() {
+    let exchange = |s: &mut Signals| {
+        for [right, left] in
+            [[Wheel::Fr, Wheel::Fl], [Wheel::Mr, Wheel::Ml], [Wheel::Br, Wheel::Bl]]
+        {
+            let (right, left) = (right.index(), left.index());
+            s.wheel_speed_rad_s.0.swap(right, left);
+            s.smooth_wheel_speed_rad_s.0.swap(right, left);
+            s.stroke_m.0.swap(right, left);
+            s.stroke_rate_m_s.0.swap(right, left);
+            s.target_stroke_m.0.swap(right, left);
+            s.cylinder_load_n.0.swap(right, left);
+            s.opening.0.swap(right, left);
+        }
+    };
+    let drive = || own_logs::run("drive", &Effects::default(), true).signals;
+    let told = |mut s: Signals, change: &dyn Fn(&mut Signals)| {
+        change(&mut s);
+        ensure_agreeing(&[s], &Machine::xt28()).map_err(|error| error.to_string())
+    };
+    assert_eq!(told(drive(), &|_| ()), Ok(()));
+    let error = told(drive(), &exchange).unwrap_err();
+    assert!(
+        error.contains("left and right are exchanged in the wheel speeds, or in all"),
+        "{error}"
+    );
+    // A side of which all speeds read too little leads no more in a bend, be it one way alone.
+    for factor in [0.6, 1.6] {
+        let side = |s: &mut Signals| {
+            for w in [Wheel::Fl, Wheel::Ml, Wheel::Bl] {
+                times(&mut s.wheel_speed_rad_s[w], factor);
+                times(&mut s.smooth_wheel_speed_rad_s[w], factor);
+            }
+        };
+        assert_eq!(told(drive(), &side), Ok(()), "{factor}");
+    }
+}
+
 /// As far as effects reach, and farther than a machine would be driven with.
 #[test]
 fn steering_and_wheels_with_a_fault_are_left_to_the_diagnosis() {

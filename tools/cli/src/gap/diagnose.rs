@@ -243,18 +243,22 @@ fn split(inquiry: &Inquiry, left: &[String], choice: &Choice) -> String {
     let of = |fit: bool| {
         let runs = inquiry.runs.iter().filter(|run| run.fit == fit);
         let files: Vec<String> = runs.map(FieldRun::file).collect();
-        if files.is_empty() { "none".to_owned() } else { files.join(", ") }
+        files.join(", ")
     };
     let left =
         if left.is_empty() { String::new() } else { format!("; left out: {}", left.join(", ")) };
     let none_spared =
         !choice.is_advised && inquiry.runs.len() > 1 && inquiry.runs.iter().all(|run| run.fit);
     let why = if none_spared {
-        "nobody said which, and each run shows an effect that no other does, so none is held out"
+        "nobody said which, and each run shows an effect that no other does"
     } else {
         choice.why.as_str()
     };
-    format!("Fitted on {}; held out: {}{left} ({why}).", of(true), of(false))
+    let held = match of(false) {
+        none if none.is_empty() => "none, so nothing was foretold".to_owned(),
+        runs => runs,
+    };
+    format!("Fitted on {}; held out: {held}{left} ({why}).", of(true))
 }
 
 /// A bar over the whole diagnosis; indicatif draws it on a terminal only.

@@ -7,6 +7,7 @@ mod chamber_order;
 mod heading_sense;
 mod joint_scale;
 mod load_scale;
+mod side_order;
 mod speed_scale;
 mod stroke_scale;
 mod wheel_order;
@@ -26,6 +27,8 @@ pub use joint_scale::JointScale;
 use joint_scale::joint_scale;
 pub use load_scale::LoadScale;
 use load_scale::load_scale;
+pub use side_order::SideOrder;
+use side_order::side_order;
 pub use speed_scale::SpeedScale;
 use speed_scale::speed_scale;
 pub use stroke_scale::StrokeScale;
@@ -75,6 +78,9 @@ pub(crate) fn ensure_motions_agreeing(
     }
     if let Some(scale) = joint_scale(runs, machine) {
         return Err(Disagreement::JointScale { scale });
+    }
+    if let Some(order) = side_order(runs) {
+        return Err(Disagreement::SideOrder { order });
     }
     if let Some(scale) = stroke_scale(runs) {
         return Err(Disagreement::StrokeScale { scale });

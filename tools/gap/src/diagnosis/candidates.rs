@@ -202,8 +202,25 @@ impl<'a> Docket<'a> {
 
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.
     pub(super) fn apart(&self, fits: &[&Fit], most: f64) -> Vec<Left> {
-        let (effects, from_s) = self.believing(fits);
-        self.fit.apart(Belief { effects: &effects, from_s }, most)
+        let in_turn = self.in_turn(fits);
+        let beliefs = in_turn.iter().map(|(effects, from_s)| Belief { effects, from_s: *from_s });
+        self.fit.apart(&beliefs.collect::<Vec<_>>(), most)
+    }
+
+    /// What is believed once each of `fits` has set in, and from when on, s, the earliest first: one that
+    /// sets in late hides nothing of what was there before.
+    fn in_turn(&self, fits: &[&Fit]) -> Vec<(Effects, f64)> {
+        let mut fits = fits.to_vec();
+        fits.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        let mut effects = self.fit.base().clone();
+        let together = fits.chunk_by(|a, b| a.from_s.total_cmp(&b.from_s).is_eq());
+        let beliefs = together.map(|together| {
+            for fit in together {
+                effects = fit.hypothesis.applied(&effects, &fit.values);
+            }
+            (effects.clone(), together[0].from_s)
+        });
+        beliefs.collect()
     }
 
     fn believing(&self, fits: &[&Fit]) -> (Effects, f64) {
@@ -294,6 +311,47 @@ mod tests {
     use xt28_sim::effects::Scope;
 
     use super::*;
+    use crate::diagnosis::generator::Generator;
+    use crate::{Channel, Series, Terrain};
+
+    /// A machine that drives for 20 s, is told to bend to and fro, and does not.
+    fn bends() -> Signals {
+        let reads = |channel: Channel| -> Series {
+            let at = |k: i32| (0.1 * f64::from(k), 0.02 * f64::from(k));
+            let told = |turn: f64| match channel {
+                Channel::TargetJoint => 0.2 * turn.sin(),
+                Channel::WheelSpeed(_) => 2.0,
+                _ => 0.0,
+            };
+            (0..200).map(at).map(|(at_s, turn)| (at_s, told(turn))).collect()
+        };
+        let all = Channel::all().into_iter().map(|channel| (channel, reads(channel)));
+        Signals::of_series("made up", &all.collect(), 20.0, Terrain::Flat).unwrap()
+    }
+
+    #[test]
+    fn a_cause_is_told_from_its_own_beginning_beside_one_that_begins_later() {
+        let (runs, knobs) = ([bends()], Knob::all());
+        let (generators, nothing) = (vec![Generator::SteerEcu(0)], Effects::default());
+        let machine = Machine::xt28();
+        let fit = Evidence::watching(generators, &runs, &machine, nothing, &knobs);
+        let docket = Docket { fit, held: None };
+        let weak = |from_s| {
+            let weak = Candidate::made_up("steer-gain", Scope::All, 90.0).fit;
+            Fit { from_s, values: vec![0.3; weak.values.len()], ..weak }
+        };
+        let mut beside = Candidate::made_up("arm-delay", Scope::All, 90.0).fit;
+        let neutral = beside.hypothesis.effect.parameters.iter().map(|p| p.neutral);
+        (beside.values, beside.from_s) = (neutral.collect(), 12.0);
+        let told = |fits: &[&Fit]| -> f64 {
+            docket.apart(fits, f64::INFINITY).iter().map(|left| left.square).sum()
+        };
+        let alone = told(&[&weak(0.0)]);
+        assert!((told(&[&weak(0.0), &beside]) - alone).abs() < 1e-9 * alone, "{alone}");
+        assert!((told(&[&beside, &weak(0.0)]) - alone).abs() < 1e-9 * alone, "in any order");
+        let late = told(&[&weak(12.0)]);
+        assert!((late - alone).abs() > 1e-3 * alone, "when it sets in tells: {alone} {late}");
+    }
 
     #[test]
     fn what_grows_by_steps_is_no_pair() {

@@ -251,12 +251,15 @@ impl<'a> Evidence<'a> {
         with_bumps(self.left_at(&sums, &DVector::zeros(self.knobs.len())), bumps)
     }
 
-    /// What the base leaves on each signal, tolerances at their best beside `belief`, but none further
-    /// than `most` of its own: the gap that is the belief's to explain. Tolerances at their best without
-    /// it bend to it, and hide it.
+    /// What the base leaves on each signal, tolerances at their best beside `beliefs`, which take over from one
+    /// another, but none further than `most` of its own: the gap that is theirs to explain. Tolerances at their
+    /// best without them bend to it, and hide it.
     #[must_use]
-    pub fn apart<'e>(&self, belief: impl Into<Belief<'e>>, most: f64) -> Vec<Left> {
-        let step = self.step(&self.sums(belief.into(), &|_| true));
+    pub fn apart(&self, beliefs: &[Belief<'_>], most: f64) -> Vec<Left> {
+        let sums = |watch: &Watch| {
+            Cow::Owned(watch.sums_of(&watch.in_turn(self.runs, &self.machine, beliefs)))
+        };
+        let step = self.step(&self.watches.iter().map(sums).collect::<Vec<_>>());
         let step = step.map(|by| by.clamp(-most, most));
         let sums = self.sums((&self.base.effects).into(), &|_| false);
         self.left_at(&sums, &step)

@@ -1,8 +1,8 @@
 //! What two sensors tell of one thing and tell differently, beyond any fault: a database or a mapping is to blame.
 
 use crate::diagnosis::{
-    AttitudeScale, JointScale, LoadScale, OddHeading, SpeedScale, StrokeScale, SwappedChambers,
-    WheelScale,
+    AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale,
+    SwappedChambers, WheelScale,
 };
 
 /// What does not agree, and what to look at.
@@ -46,6 +46,14 @@ pub enum Disagreement {
     JointScale {
         /// Which, by how much, and what to look at.
         scale: JointScale,
+    },
+    /// Wheels turn faster inside a bend than outside.
+    #[error(
+        "the wheels on the right turn slower than those on the left where the joints bend to the left, and the other way round ({order}), which no machine does: left and right are exchanged in the wheel speeds, or in all that is read of wheels, or the joints' sign is turned in readings, targets and currents alike; compare the names of wheels in DBC and mapping with the machine"
+    )]
+    SideOrder {
+        /// How far.
+        order: SideOrder,
     },
     /// A stroke is not on the scale of its target.
     #[error(

@@ -76,10 +76,11 @@ impl Attendance {
         let before = self.last.as_ref().map(|last| last.at);
         match (before, tap.period()) {
             (Some(before), Some(period)) => {
-                self.gaps.note((at - before).as_secs_f64(), period.as_secs_f64(), line);
+                let away_s = (at - before).as_secs_f64();
+                self.gaps.note([at_s, away_s], period.as_secs_f64(), line);
             }
             (None, Some(_)) => {}
-            (_, None) => self.arrivals.note(at, line),
+            (_, None) => self.arrivals.note(at, at_s, line),
         }
         let is_news = self.last.as_ref().is_some_and(|last| last.frame.data() != frame.data());
         self.last = Some(Heard { at, frame: *frame, before, is_news });
@@ -87,22 +88,22 @@ impl Attendance {
 
     /// What is missing of it.
     fn missing(&self, tap: &Tap) -> Gaps {
-        if tap.period().is_some() { self.gaps } else { self.arrivals.gaps() }
+        if tap.period().is_some() { self.gaps.clone() } else { self.arrivals.gaps() }
     }
 
     /// How many frames are missing, and of how many.
     pub(super) fn lost(&self, tap: &Tap) -> [u64; 2] {
-        let lost = self.missing(tap).lost;
+        let lost = self.missing(tap).lost();
         [lost, self.frames + lost]
     }
 
     pub(super) fn faults(&self, tap: &Tap) -> impl Iterator<Item = (u64, FaultKind)> {
         let message = || tap.name().to_owned();
         let missing = self.missing(tap);
-        let dropped = (missing.gaps > 0).then(|| {
-            let Gaps { gaps, lost: frames, longest_s, line } = missing;
-            let (message, due) = (message(), self.frames + frames);
-            (line, FaultKind::Dropped { message, gaps, frames, due, longest_s })
+        let dropped = missing.all.first().map(|first| first.line).map(|line| {
+            let due = self.frames + missing.lost();
+            let is_held = tap.channels().any(|channel| !channel.is_fix());
+            (line, FaultKind::Dropped { message: message(), gaps: missing.all, due, is_held })
         });
         let repeated = (self.repeats > 0).then(|| {
             let (frames, of) = (self.repeats, self.frames + self.repeats);

@@ -36,6 +36,7 @@ pub(super) struct Intake {
     late: Option<LongestSpan>,
     back: Option<LongestSpan>,
     ahead: Option<LongestSpan>,
+    pauses_s: Vec<[f64; 2]>,
     messages: BTreeMap<CanId, Attendance>,
     stillness: Stillness,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
@@ -90,6 +91,8 @@ impl Intake {
         let silence = at - self.latest.max(first);
         if silence.as_secs_f64() > PAUSE_S {
             LongestSpan::note(&mut self.ahead, line, silence);
+            let to_s = (at - first).as_secs_f64();
+            self.pauses_s.push([to_s - silence.as_secs_f64(), to_s]);
         }
         self.latest = at;
         let Some(tap) = decoder.tap(frame.id()) else {
@@ -188,7 +191,8 @@ impl Intake {
             kinds.push((line, FaultKind::ClockBack { by_s: span.as_secs_f64(), frames }));
         }
         if let Some(LongestSpan { line, span, times }) = self.ahead {
-            kinds.push((line, FaultKind::ClockAhead { by_s: span.as_secs_f64(), times }));
+            let (by_s, pauses_s) = (span.as_secs_f64(), self.pauses_s.clone());
+            kinds.push((line, FaultKind::ClockAhead { by_s, times, pauses_s }));
         }
         for (id, attendance) in &self.messages {
             if let Some(tap) = decoder.tap(*id) {

@@ -1,6 +1,7 @@
 //! Faults of a log as people are told of them: what befell many messages at once is one line.
 
-use super::{FaultKind, LogFault};
+use super::{FaultKind, LogFault, frames_of, longest_told};
+use crate::Gap;
 
 /// Faults of one log, a line each; lost frames of several messages share one line, and so do repeated
 /// ones. It stands where the first of them stood. With `is_thinned`, all lack as many alike.
@@ -52,8 +53,8 @@ impl Mishap {
     /// What befell which message: how many of its frames, and of how many.
     fn of(fault: &LogFault) -> Option<(Self, &str, u64, u64)> {
         match &fault.kind {
-            FaultKind::Dropped { message, frames, due, .. } => {
-                Some((Self::Lost, message, *frames, *due))
+            FaultKind::Dropped { message, gaps, due, .. } => {
+                Some((Self::Lost, message, frames_of(gaps), *due))
             }
             FaultKind::Repeated { message, frames, of } => {
                 Some((Self::Repeated, message, *frames, *of))
@@ -104,16 +105,15 @@ struct Tally<'a> {
     worst: (&'a str, u64, u64),
     /// The greatest share of its frames that any message has of it.
     most_share: f64,
-    longest_s: f64,
+    gaps: Vec<&'a Gap>,
 }
 
 impl<'a> Tally<'a> {
     /// `None` where no message has it.
     #[allow(clippy::cast_precision_loss)]
     fn of(faults: &'a [LogFault], mishap: Mishap) -> Option<Self> {
-        let (worst, most_share, longest_s) = (("", 0, 0), 0.0, 0.0);
-        let mut tally =
-            Self { mishap, messages: 0, frames: 0, of: 0, worst, most_share, longest_s };
+        let (worst, most_share, gaps) = (("", 0, 0), 0.0, Vec::new());
+        let mut tally = Self { mishap, messages: 0, frames: 0, of: 0, worst, most_share, gaps };
         for fault in faults {
             let Some((found, message, frames, of)) = Mishap::of(fault) else { continue };
             if found != mishap {
@@ -126,8 +126,8 @@ impl<'a> Tally<'a> {
             if frames > tally.worst.1 {
                 tally.worst = (message, frames, of);
             }
-            if let FaultKind::Dropped { longest_s, .. } = fault.kind {
-                tally.longest_s = tally.longest_s.max(longest_s);
+            if let FaultKind::Dropped { gaps, .. } = &fault.kind {
+                tally.gaps.extend(gaps);
             }
         }
         (tally.messages > 0).then_some(tally)
@@ -151,7 +151,7 @@ impl<'a> Tally<'a> {
         if self.messages == 1 {
             return first.to_string();
         }
-        let Self { messages, frames, of, worst: (worst, of_worst, worst_of), longest_s, .. } = self;
+        let Self { messages, frames, of, worst: (worst, of_worst, worst_of), gaps, .. } = self;
         let percent = 100.0 * *frames as f64 / *of as f64;
         let (some, most) = (
             format!("from here on {frames} of {of} frames ({percent:.1} %) of {messages} messages"),
@@ -160,8 +160,8 @@ impl<'a> Tally<'a> {
         let place = format!("{}:{}", first.log, first.line);
         match self.mishap {
             Mishap::Lost => format!(
-                "{place}: {some} are missing, {most}; the longest gap is {:.1} ms, and the value before is held{}",
-                longest_s * 1e3,
+                "{place}: {some} are missing, {most}; the longest gap is {}, and the value before is held{}",
+                longest_told(gaps.iter().copied()),
                 self.suspect(is_thinned).map_or_else(String::new, Suspect::told)
             ),
             Mishap::Repeated => format!(
@@ -180,8 +180,9 @@ mod tests {
     }
 
     fn dropped(message: &str, frames: u64) -> FaultKind {
-        let message = message.to_owned();
-        FaultKind::Dropped { message, gaps: frames, frames, due: 100, longest_s: 0.02 }
+        let gap = |k: u64| Gap { span_s: [k as f64, k as f64 + 0.02], frames: 1, line: 3 + k };
+        let (message, gaps) = (message.to_owned(), (0..frames).map(gap).collect());
+        FaultKind::Dropped { message, gaps, due: 100, is_held: true }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! stops early or stays away held meanwhile was not measured, and says nothing of the machine.
 
 use crate::diagnosis::{needed, sampled};
-use crate::{Channel, FieldLog};
+use crate::{Channel, Decoder, FieldLog};
 
 /// How long a value may be held, s: the slowest message that is read comes ten times a second.
 const HELD_MAX_S: f64 = 1.0;
@@ -26,7 +26,7 @@ struct Part {
 
 /// The longest part of `log` in which all that is read is there, but for what comes and goes and can be done
 /// without; and a sentence each on what was left out. What is never there is for others to say.
-pub(super) fn attended(log: FieldLog) -> (FieldLog, Vec<String>) {
+pub(super) fn attended(log: FieldLog, decoder: &Decoder) -> (FieldLog, Vec<String>) {
     let (all, least) = (Part::longest(&log, sampled()), Part::longest(&log, needed()));
     let spares = all.length_s() < WORTH * least.length_s();
     let part = if spares { least } else { all };
@@ -52,7 +52,18 @@ pub(super) fn attended(log: FieldLog) -> (FieldLog, Vec<String>) {
     }
     let log = if part.bounds.is_empty() { log } else { log.within(part.span_s) };
     let spared: Vec<Channel> = spared.into_iter().map(|(channel, _)| channel).collect();
-    (log.without(&spared), notes)
+    let unread = messages_of_none_but(&spared, decoder);
+    (log.without_losses_of(&unread).without(&spared), notes)
+}
+
+/// Messages of `spared` channels that no other is read from: it is told of those that they are done without, and
+/// not as well that a value is held in them.
+fn messages_of_none_but<'a>(spared: &[Channel], decoder: &'a Decoder) -> Vec<&'a str> {
+    let fixes = Channel::all().into_iter().filter(|channel| channel.is_fix());
+    let read = sampled().chain(fixes).filter(|channel| !spared.contains(channel));
+    let read: Vec<&str> = read.filter_map(|channel| decoder.message_of(channel)).collect();
+    let all = spared.iter().filter_map(|channel| decoder.message_of(*channel));
+    all.filter(|message| !read.contains(message)).collect()
 }
 
 impl Part {
@@ -115,7 +126,10 @@ fn silences(log: &FieldLog) -> Vec<Hole> {
     all_s.sort_by(f64::total_cmp);
     let told = |span_s: [f64; 2]| Hole {
         span_s,
-        what: format!("nothing was logged from {:.2} to {:.2} s", span_s[0], span_s[1]),
+        what: format!(
+            "nothing was logged from {:.2} to {:.2} s (the logger paused, or its clock went ahead)",
+            span_s[0], span_s[1]
+        ),
     };
     pauses(&all_s, SILENCE_MAX_S).map(told).collect()
 }

@@ -83,7 +83,7 @@ impl RunSet {
         };
         let used = |i: usize| if i < held_from { Use::Fit } else { Use::Held };
         let why = if runs.len() < 2 {
-            "there is only one run, so nothing is held out to judge a cause on"
+            "there is only one run"
         } else {
             "nobody said which: a third is held out, rounded up, the last that show no effect the others do not"
         };

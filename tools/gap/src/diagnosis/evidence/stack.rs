@@ -87,10 +87,20 @@ impl Stack {
         &self,
         runs: &[Signals],
         machine: &Machine,
+        belief: Belief<'_>,
+    ) -> Vec<f64> {
+        self.after(runs, machine, &self.base.effects, belief)
+    }
+
+    /// The same where other effects than the base's hold before the belief does.
+    pub(super) fn after(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        before: &Effects,
         Belief { effects, from_s }: Belief<'_>,
     ) -> Vec<f64> {
-        let Base { effects: before, since_s } = &self.base;
-        let schedule = EffectSchedule { before, from_s, effects, since_s: *since_s };
+        let schedule = EffectSchedule { before, from_s, effects, since_s: self.base.since_s };
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
@@ -105,6 +115,11 @@ impl Stack {
             }
         }
         values
+    }
+
+    /// What they were made with.
+    pub(super) const fn base_effects(&self) -> &Effects {
+        &self.base.effects
     }
 
     /// Whether `effects` give the valve that it watches another play.

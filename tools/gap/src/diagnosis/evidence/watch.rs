@@ -158,6 +158,27 @@ impl Watch {
         self.stitched(&self.stack.again(runs, machine, belief), belief.from_s)
     }
 
+    /// The same under beliefs that take over from one another, each at its own instant, the first from the base.
+    pub(super) fn in_turn(
+        &self,
+        runs: &[Signals],
+        machine: &Machine,
+        beliefs: &[Belief<'_>],
+    ) -> Vec<f64> {
+        let mut values = self.stack.values.clone();
+        let mut before = self.stack.base_effects();
+        for belief in beliefs {
+            let later = self.stack.after(runs, machine, before, *belief);
+            for ((value, later), at_s) in values.iter_mut().zip(later).zip(&self.stack.at_s) {
+                if *at_s >= belief.from_s {
+                    *value = later;
+                }
+            }
+            before = belief.effects;
+        }
+        values
+    }
+
     /// The same for effects that set in at each of `instants` of every run, s; as if they had always been
     /// there, so that one run of the generator does for all. But for a valve's play: the spool would not be where it
     /// is, for as long as no command crosses the play.

@@ -10,7 +10,7 @@ use super::super::inquiry::Inquiry;
 use super::super::signals::{PERIOD_S, command_periods_s};
 use super::super::verdict::Verdict;
 use super::objection::Objection;
-use super::{Findings, SignalFindings, held_out_runs};
+use super::{Findings, SignalFindings};
 
 /// A gap beyond this is no other machine's, but may be another wheel's.
 const WHEELS_APART: f64 = 5.0;
@@ -20,9 +20,6 @@ const FAIR_SHARE: f64 = 0.2;
 /// The notes on `findings` that came to this verdict.
 pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
     let mut notes = Vec::new();
-    if held_out_runs(inquiry).is_empty() {
-        notes.push("no run was held out, so nothing was foretold: every run was fitted".to_owned());
-    }
     notes.extend(findings.chosen_by_held());
     notes.extend(commanded_seldom(inquiry));
     notes.extend(slopes_unseen(inquiry));

@@ -7,11 +7,12 @@
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::effects::{Lag, SlipperyGround};
-use xt28_sim::{Drive, DriveInput, Effects};
+use xt28_sim::{Drive, DriveInput, Effects, Parts};
 
 use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuit_means, circuits_pa};
 use super::grade::{Grade, climbs};
-use super::rolling::rolling_errors;
+use super::press::{normal_n, own_n};
+use super::rolling::{SAMPLES_PER_LOOK, rolling_errors, wheel_kinematics};
 use super::scrub::scrub_drag_nm;
 use super::traction::TURNS_RAD_S;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
@@ -130,8 +131,7 @@ fn force_error_nm(
     let slips = effects.wheels.iter().any(|(_, e)| e.slippery_ground != SlipperyGround::default());
     let travels_m_s = slips.then(|| rolling_errors(signals, machine, effects).ahead_m_s);
     let weight_nm = mass_kg * GRAVITY_M_S2 * w.radius_m / 6.0;
-    let added = effects.wheels.iter().map(|(_, e)| e.rolling_resistance.added).sum::<f64>() / 6.0;
-    let drag_nm = (w.rolling_resistance + added) * weight_nm;
+    let added = added_resistance(signals, machine, effects);
     let nm_per_pa = w.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     let end = signals.len.saturating_sub(1);
     let scrub_nm = scrub_drag_nm(signals, machine, effects);
@@ -146,6 +146,7 @@ fn force_error_nm(
                 let speeds_up = (mean(to) - mean(from)) / over_s;
                 let [first, second] = circuits_pa(signals, i);
                 let rolls = (mean(i) / TURNS_RAD_S).tanh();
+                let drag_nm = (w.rolling_resistance + added[i / SAMPLES_PER_LOOK]) * weight_nm;
                 let travels_up = travels_m_s
                     .as_ref()
                     .map_or(speeds_up, |m_s| (m_s[to] - m_s[from]) / w.radius_m / over_s);
@@ -169,8 +170,32 @@ fn force_error_nm(
     moving_mean(&errors, FORCE_S)
 }
 
+/// What is added to the coefficient of rolling resistance, mean of the wheels, each counted by what it presses with;
+/// one for every [`SAMPLES_PER_LOOK`] samples.
+fn added_resistance(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+    let added = PerWheel::from_fn(|w| effects.wheels[w].rolling_resistance.added);
+    let steps = signals.len.div_ceil(SAMPLES_PER_LOOK);
+    let mean = added.sum() / 6.0;
+    if added.iter().all(|(_, a)| *a == added[Wheel::Fr]) {
+        return vec![mean; steps];
+    }
+    let parts = Parts::new(machine, effects);
+    let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
+    let kinematics = signals.kinematics(|| wheel_kinematics(signals, machine));
+    let each = kinematics.iter().enumerate().map(|(k, moves)| {
+        let load_n = |w| signals.cylinder_load_n[w][k * SAMPLES_PER_LOOK];
+        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
+        let by_load: f64 = added.iter().map(|(w, added)| added * normal_n[w]).sum();
+        let all_n = normal_n.sum();
+        if all_n > 0.0 { by_load / all_n } else { mean }
+    });
+    each.collect()
+}
+
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Axle;
+
     use super::super::still::still;
     use super::*;
 
@@ -220,6 +245,39 @@ mod tests {
         assert!(sped_nm > 0.9 * sped, "{sped_nm} of {sped}");
         let lags_nm = left_behind_nm(2.0, -0.8, 5.0e3);
         assert!(lags_nm < 0.3 * braked, "{lags_nm} of {braked} behind a drive that lags");
+    }
+
+    #[test]
+    fn wheels_that_roll_hard_brake_by_what_they_press_with() {
+        let (machine, mut s) = (Machine::xt28(), still(10));
+        let weight_nm = machine.mass_kg() * GRAVITY_M_S2 * machine.wheels.radius_m / 6.0;
+        let pose = machine.linkage().at_stroke(0.2);
+        let parts = Parts::new(&machine, &Effects::default());
+        let (mut front_n, mut all_n) = (0.0, 0.0);
+        for w in Wheel::ALL {
+            let is_front = w.axle() == Axle::Front;
+            let load_n = if is_front { 80.0e3 } else { 20.0e3 };
+            s.cylinder_load_n[w].fill(load_n);
+            s.smooth_stroke_m[w].fill(0.2);
+            s.wheel_speed_rad_s[w].fill(1.0);
+            let presses_n = normal_n(own_n(&machine, &parts, w), load_n, &pose);
+            front_n += if is_front { presses_n } else { 0.0 };
+            all_n += presses_n;
+        }
+        let resists = machine.wheels.rolling_resistance + 0.08 * front_n / all_n;
+        let over_pa =
+            resists * weight_nm / machine.wheels.torque_max_nm * PRESSURE_AT_TORQUE_MAX_PA;
+        [1, 3].into_iter().for_each(|side| s.pump_pressure_pa[side].fill(over_pa));
+        let left_nm = |axle: Axle| {
+            let mut effects = Effects::default();
+            for w in Wheel::ALL.into_iter().filter(|w| w.axle() == axle) {
+                effects.wheels[w].rolling_resistance.added = 0.08;
+            }
+            drive_errors(&s, &machine, &effects).force_nm[500].abs()
+        };
+        assert!(front_n > 0.5 * all_n, "{front_n} of {all_n}");
+        assert!(left_nm(Axle::Front) < 1.0, "{}", left_nm(Axle::Front));
+        assert!(left_nm(Axle::Rear) > 300.0, "{}", left_nm(Axle::Rear));
     }
 
     /// Largest error of the circuits' pressures, Pa, where BR spins at twice the speed of the others and its motor

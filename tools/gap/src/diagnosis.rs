@@ -27,6 +27,7 @@ mod instant;
 mod judgement;
 mod kinematics;
 mod knob;
+mod likely_wheels;
 mod next_drive;
 mod noise;
 mod overlap;

@@ -10,6 +10,7 @@ use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
 use super::judgement::{Findings, HeldOut, HeldOutSignal, SignalFindings, judge};
 use super::knob::{Knob, SHIFT_MAX};
+use super::likely_wheels::at_likely_wheels;
 use super::overlap::{Paid, own_share};
 use super::signals::Signals;
 use super::verdict::Diagnosis;
@@ -75,12 +76,12 @@ impl Inquiry {
         tell("trying every cause", 0.05);
         let shown = Shown::of(self.runs.iter().map(|run| &run.signals), &self.machine);
         let single = tested(first.candidates(&self.catalogue), &shown);
-        let Some(best) = single.first() else {
+        if single.is_empty() {
             let Paid { left: after, shifts } = first.paid(&[]);
             let signals = SignalFindings::each([&unbent, &alone, &after, &after], &[]);
             let held_out = first.held_out(&first, &[]);
             return Findings { signals, shifts, held_out, ..Findings::default() };
-        };
+        }
         tell("trying second causes", 0.4);
         let Pairs { pair, firsts, beside } = self.second(&docket, &single, &shown);
         tell("looking at what is left", 0.7);
@@ -90,17 +91,23 @@ impl Inquiry {
             pair.first().is_some_and(|[_, best]| best.fit.hypothesis.effect == second)
         };
         let firsts = firsts.filter(|(second, _)| is_beside(second)).map_or(Vec::new(), |(_, f)| f);
-        let nothing = &self.believed;
-        let (believed, court, last) = match pair.first() {
-            Some([one, second]) => (vec![&one.fit, &second.fit], &beside, &second.fit),
-            None => (vec![&best.fit], &first, &best.fit),
+        let look = |believed: &[&Candidate], court: &Docket, paid: Option<Paid>| {
+            let fits: Vec<&Fit> = believed.iter().map(|candidate| &candidate.fit).collect();
+            let last = fits[fits.len() - 1];
+            let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
+            let (echoes, unevens) = court.again(&[last], &self.believed);
+            let held_out = first.held_out(court, &[last]);
+            let apart = first.apart(&fits, SHIFT_MAX);
+            let signals = SignalFindings::each([&unbent, &alone, &apart, &after], &echoes);
+            Findings { signals, unevens, shifts, held_out, ..Findings::default() }
         };
-        let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
-        let (echoes, unevens) = court.again(&[last], nothing);
-        let held_out = first.held_out(court, &[last]);
-        let apart = first.apart(&believed, SHIFT_MAX);
-        let signals = SignalFindings::each([&unbent, &alone, &apart, &after], &echoes);
-        Findings { signals, unevens, single, pair, firsts, shifts, held_out }
+        match pair.first() {
+            Some([one, second]) => {
+                let looked = look(&[one, second], &beside, paid);
+                Findings { single, pair, firsts, ..looked }
+            }
+            None => at_likely_wheels(single, &|alone| look(&[alone], &first, None)),
+        }
     }
 
     /// Two causes at once, the best first, none where one is enough; and what was found on the way.

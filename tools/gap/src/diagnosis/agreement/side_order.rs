@@ -5,6 +5,7 @@ use core::fmt;
 
 use xt28_machine::{PerWheel, Side};
 
+use super::COMPARED_EVERY;
 use crate::diagnosis::signals::{Signals, moving_mean};
 
 /// Standard deviation of both joints together that is too little of a bend, rad.
@@ -14,9 +15,8 @@ const TURNS_RAD_S: f64 = 0.4;
 /// The sides go against the joints where they correlate like this. With left and right in their places most runs do
 /// by more than 0.8, and none by less than -0.17: of a machine whose front arms sink, and whose wheels slip.
 const AGAINST: f64 = -0.6;
-/// Samples that are too few, ten a second.
+/// Samples that are too few, one in [`COMPARED_EVERY`].
 const SAMPLES_MIN: usize = 50;
-const STRIDE: usize = 10;
 /// Time over which a speed's steps are evened out, s.
 const SMOOTHED_S: f64 = 0.7;
 
@@ -80,7 +80,7 @@ fn pairs(s: &Signals) -> Vec<[f64; 2]> {
         let pair = [joints[0][i] + joints[1][i], (right - left) / mean];
         (mean.abs() > TURNS_RAD_S).then_some(pair)
     };
-    (0..s.len).step_by(STRIDE).filter_map(pair).collect()
+    (0..s.len).step_by(COMPARED_EVERY).filter_map(pair).collect()
 }
 
 impl fmt::Display for SideOrder {

@@ -20,6 +20,9 @@ pub(crate) struct ThirdMake {
     /// Seed of the first case; the next has one more
     #[arg(long, default_value_t = 1, value_name = "SEED")]
     seed: u32,
+    /// What resists rolling acts between wheel and arm, as bearings do, not between wheel and ground
+    #[arg(long)]
+    bearings: bool,
 }
 
 impl ThirdMake {
@@ -30,6 +33,9 @@ impl ThirdMake {
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
         let mut command = yardstick::module(workspace, "third_make")?;
         command.arg(std::path::absolute(&self.out)?).args(&self.causes);
+        if self.bearings {
+            command.arg("--bearings");
+        }
         let status = command.arg(format!("--seed={}", self.seed)).status()?;
         Ok(u8::from(!status.success()))
     }

@@ -55,6 +55,7 @@ def write(args, seed: int, causes: list[str]) -> str:
     """One case; its name."""
     random = np.random.default_rng(seed)
     truth, machine = Truth(), Machine(args.machine)
+    truth.drive.in_bearings = args.bearings
     tolerances(truth, random)
     faults = [draw(cause, random) for cause in causes]
     for fault in faults:
@@ -85,6 +86,11 @@ def main() -> None:
     parser.add_argument("--dbc", type=Path, default=Path("dbc/xt28.dbc"))
     parser.add_argument(
         "--seed", type=int, default=1, help="of the first case; the next has one more"
+    )
+    parser.add_argument(
+        "--bearings",
+        action="store_true",
+        help="what resists rolling acts between wheel and arm, not between wheel and ground",
     )
     parser.add_argument(
         "causes",

@@ -104,14 +104,14 @@ class Body:
             self.data.qvel[self._dof["wheel"]].tolist(),
         )
 
-    def step(self, arm_nm, joint_nm, motor_nm, drag_nm) -> None:
-        """One step under these torques; rolling resistance comes from the ground."""
+    def step(self, arm_nm, joint_nm, wheel_nm, ground_nm) -> None:
+        """One step under these torques; a wheel has one between it and its arm, and one of the ground."""
         data = self.data
         data.qfrc_applied[self._dof["arm"]] = arm_nm
         data.qfrc_applied[self._dof["joint"]] = joint_nm
-        data.qfrc_applied[self._dof["wheel"]] = motor_nm
+        data.qfrc_applied[self._dof["wheel"]] = wheel_nm
         data.xfrc_applied[self._wheel_bodies, 3:] = (
-            np.array(drag_nm)[:, None] * data.xaxis[self._wheel_joints]
+            np.array(ground_nm)[:, None] * data.xaxis[self._wheel_joints]
         )
         mujoco.mj_step(self.model, data)
 

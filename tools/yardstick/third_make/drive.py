@@ -84,7 +84,7 @@ class Drive:
         self._radius_m = w.radius_m
 
     def step(self, throttle: float, angle, rate, normal_n):
-        """Torque of motor and of rolling resistance on every wheel, Nm."""
+        """Torques on every wheel, Nm: between it and its arm, and of the ground."""
         t, dt, bound = self._truth, self._dt_s, self._bound_nm
         pedal = self._line.step(throttle)
         asked = math.copysign(abs(pedal) ** t.curve, pedal) * self._full_rad_s
@@ -112,7 +112,10 @@ class Drive:
         self.circuit_nm = [nm * scale for nm in circuit]
         motor = [nm * scale for nm in motor]
         self._hold(motor, pedal, angle, rate)
-        return motor, self._drag(angle, rate, normal_n)
+        drag = self._drag(angle, rate, normal_n)
+        if t.in_bearings:
+            return [nm + by for nm, by in zip(motor, drag, strict=True)], [0.0] * N
+        return motor, drag
 
     def _hold(self, motor, pedal, angle, rate) -> None:
         for w, most in enumerate(self._truth.hold_nm):

@@ -73,6 +73,8 @@ class Drive:
     lag_s: float = 0.15
     curve: float = 1.0
     rolling: np.ndarray = per_wheel(0.02)
+    # Whether that acts between wheel and arm, as in a bearing, for between wheel and ground.
+    in_bearings: bool = False
     hold_nm: np.ndarray = per_wheel(0.0)
     flat_nm: np.ndarray = per_wheel(0.0)
     droop_per_w: float = 0.0

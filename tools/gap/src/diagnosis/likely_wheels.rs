@@ -29,8 +29,11 @@ pub(super) fn at_likely_wheels(
     if best.left_over() <= TOO_MUCH {
         return Findings { single, ..best };
     }
-    let least = single[0].score() - ALIKE * temperature(single[0].score());
-    let is_alike = |c: &&Candidate| c.name() == single[0].name() && c.score() >= least;
+    // Another effect that explains more than these wheels would be told before them.
+    let (is_its, score) = (|c: &&Candidate| c.name() == single[0].name(), single[0].score());
+    let rival = single.iter().filter(|c| !is_its(c)).map(Candidate::score);
+    let least = rival.fold(score - ALIKE * temperature(score), f64::max);
+    let is_alike = |c: &&Candidate| is_its(c) && c.score() >= least;
     let looked: Vec<Findings> = single[1..].iter().filter(is_alike).map(of).collect();
     let leaves_least = looked.iter().min_by(|a, b| a.left_over().total_cmp(&b.left_over()));
     let Some(chosen) = leaves_least.filter(|least| least.left_over() < LITTLE) else {
@@ -108,6 +111,13 @@ mod tests {
         let found = said(&[(ROLLS, Scope::All, 177.0, 30.0), (ROLLS, FR, 176.0, 20.0)]);
         assert_eq!(wheels(&found), [Scope::All, FR]);
         assert!(found.left_over() > TOO_MUCH);
+    }
+
+    #[test]
+    fn wheels_that_explain_less_than_another_effect_are_not_taken() {
+        let lags = ("drive-lag", Scope::All, 176.0, 30.0);
+        let found = said(&[(ROLLS, Scope::All, 177.0, 30.0), lags, (ROLLS, FR, 175.0, 0.3)]);
+        assert_eq!(wheels(&found), [Scope::All, Scope::All, FR]);
     }
 
     #[test]

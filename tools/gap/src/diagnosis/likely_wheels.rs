@@ -6,9 +6,10 @@
 
 use super::candidates::Candidate;
 use super::judgement::{Findings, temperature};
+use super::scales::Scales;
 
 /// What is left over, as a judgement counts it, from which the best cause is more likely unknown than right.
-const TOO_MUCH: f64 = 1.33;
+const TOO_MUCH: f64 = Scales::IN_USE.unknown_times;
 /// How many times what evidence is taken to be uncertain by others may be less likely, to be looked at.
 const ALIKE: f64 = 2.0;
 /// What is left over at most by one that is taken instead.

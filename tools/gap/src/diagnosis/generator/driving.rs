@@ -11,7 +11,7 @@ use xt28_sim::{Drive, DriveInput, Effects, Parts};
 
 use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuit_means, circuits_pa};
 use super::grade::{Grade, climbs};
-use super::press::{normal_n, own_n};
+use super::press::{normals_n, own_n};
 use super::rolling::{SAMPLES_PER_LOOK, rolling_errors, wheel_kinematics};
 use super::scrub::scrub_drag_nm;
 use super::traction::TURNS_RAD_S;
@@ -184,7 +184,7 @@ fn added_resistance(signals: &Signals, machine: &Machine, effects: &Effects) -> 
     let kinematics = signals.kinematics(|| wheel_kinematics(signals, machine));
     let each = kinematics.iter().enumerate().map(|(k, moves)| {
         let load_n = |w| signals.cylinder_load_n[w][k * SAMPLES_PER_LOOK];
-        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
+        let normal_n = normals_n(&own_n, load_n, &moves.pose);
         let by_load: f64 = added.iter().map(|(w, added)| added * normal_n[w]).sum();
         let all_n = normal_n.sum();
         if all_n > 0.0 { by_load / all_n } else { mean }
@@ -196,6 +196,7 @@ fn added_resistance(signals: &Signals, machine: &Machine, effects: &Effects) -> 
 mod tests {
     use xt28_machine::Axle;
 
+    use super::super::press::normal_n;
     use super::super::still::still;
     use super::*;
 

@@ -19,16 +19,24 @@ pub(super) fn normal_n(own_n: f64, load_n: f64, pose: &ArmPose) -> f64 {
     (own_n + load_n * pose.lever_m / pose.reach_m).max(0.0)
 }
 
-/// What both wheels of each axle press with, front to rear, N: of their own weights, the loads of their cylinders and
-/// how their arms stand.
+/// The same of all six, of their own weights, the loads of their cylinders and how their arms stand.
+pub(super) fn normals_n(
+    own_n: &PerWheel<f64>,
+    load_n: impl Fn(Wheel) -> f64,
+    pose: &PerWheel<ArmPose>,
+) -> PerWheel<f64> {
+    PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &pose[w]))
+}
+
+/// The same of both wheels of each axle together, front to rear, N.
 pub(super) fn axles_n(
     own_n: &PerWheel<f64>,
     load_n: &PerWheel<f64>,
     pose: &PerWheel<ArmPose>,
 ) -> [f64; 3] {
     let mut axles_n = [0.0; 3];
-    for w in Wheel::ALL {
-        axles_n[w.axle() as usize] += normal_n(own_n[w], load_n[w], &pose[w]);
+    for (w, normal_n) in normals_n(own_n, |w| load_n[w], pose).iter() {
+        axles_n[w.axle() as usize] += normal_n;
     }
     axles_n
 }

@@ -12,7 +12,7 @@ use xt28_sim::{Effects, Parts};
 use super::axles::Axles;
 use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, motor_nm};
 use super::grade::Grade;
-use super::press::{normal_n, own_n, rolling_radius_m};
+use super::press::{normals_n, own_n, rolling_radius_m};
 use super::stance::{Held, Holds};
 use super::traction::Traction;
 use crate::diagnosis::kinematics::Kinematics;
@@ -101,7 +101,7 @@ fn held_errors(
     for (i, moves) in (0..s.len).step_by(SAMPLES_PER_LOOK).zip(kinematics) {
         let end = (i + SAMPLES_PER_LOOK).min(s.len);
         let load_n = |w| s.cylinder_load_n[w][i];
-        let normal_n = PerWheel::from_fn(|w| normal_n(own_n[w], load_n(w), &moves.pose[w]));
+        let normal_n = normals_n(&own_n, load_n, &moves.pose);
         let radius_m = PerWheel::from_fn(|w| rolling_radius_m(&parts, w, normal_n[w]));
         let mut traction =
             Traction::new(s, machine, effects, &normal_n, i, (before.as_ref(), step_s));

@@ -72,7 +72,10 @@ class Arms:
         command = line[0]
         self._slow[i] += (command - self._slow[i]) * min(1.0, dt / max(a.lag_s[i], dt))
         half = 0.5 * a.play[i]
-        self._spool[i] = min(max(self._spool[i], self._slow[i] - half), self._slow[i] + half)
+        if abs(self._slow[i] - self._spool[i]) > a.stick[i]:
+            self._spool[i] = min(
+                max(self._spool[i], self._slow[i] - half), self._slow[i] + half
+            )
         spool = self._spool[i]
         beyond = abs(spool) - a.deadband[i]
         if beyond <= 0.0:
@@ -112,7 +115,7 @@ class Arms:
                 rest += a.sag_m_s[i] * dt
             gas, k = self._gas[i], a.stiffness_n_m[i]
             reach_m = self._force_max_n / k if gas is None else gas.squeeze_m(self._force_max_n)
-            rest = min(max(rest, stroke_m[i] - reach_m, 0.0), stroke_m[i] + reach_m)
+            rest = min(max(rest, stroke_m[i] - reach_m, 0.0), stroke_m[i] + reach_m, a.stop_m[i])
             self._rest_m[i] = rest
             squeeze = rest - stroke_m[i]
             spring = k * squeeze if gas is None else gas.push_n(squeeze)

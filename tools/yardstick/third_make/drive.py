@@ -13,6 +13,8 @@ SLIP_FREE_RAD_S = 4.0 * math.tau / 60.0
 SLIP_GAIN_NMS = 6.0e3
 HOLD_NM_RAD = 2.0e6
 FADE_RAD_S = 0.05
+# How often a second an engine sways whose governor hunts (assumed).
+SURGE_HZ = 0.7
 # Below this throttle idle motors may hold their wheels.
 SHUT = 0.01
 
@@ -83,12 +85,13 @@ class Drive:
         self._power_w = 0.0
         self._radius_m = w.radius_m
 
-    def step(self, throttle: float, angle, rate, normal_n):
+    def step(self, throttle: float, angle, rate, normal_n, time_s: float):
         """Torques on every wheel, Nm: between it and its arm, and of the ground."""
         t, dt, bound = self._truth, self._dt_s, self._bound_nm
         pedal = self._line.step(throttle)
         asked = math.copysign(abs(pedal) ** t.curve, pedal) * self._full_rad_s
         self.engine_rpm = self._rpm * (1.0 - min(t.droop_per_w * max(self._power_w, 0.0), 0.6))
+        self.engine_rpm *= 1.0 + t.surge * math.sin(math.tau * SURGE_HZ * time_s)
         asked *= self.engine_rpm / self._rpm
         self._target += (asked - self._target) * min(1.0, dt / t.lag_s)
         means = [sum(rate[w] for w in c) / 3.0 for c in self._circuits]
@@ -96,6 +99,7 @@ class Drive:
         circuit = [
             min(max(self._mean_nm + self._gain * (self._target - m), -bound), bound) for m in means
         ]
+        circuit[1] *= t.second_circuit
         motor = [0.0] * N
         for wheels, mean, nm in zip(self._circuits, means, circuit, strict=True):
             for w in wheels:

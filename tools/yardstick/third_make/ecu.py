@@ -22,6 +22,7 @@ class ArmEcu:
     def __init__(self, truth: Truth):
         self._truth = truth
         self._sum = [0.0] * N
+        self._target_mm: list[float] | None = None
         self.pressure_kpa: list[int] | None = None
         self._roll_mdeg = self._pitch_mdeg = 0
         self.current_ma = [0] * N
@@ -29,8 +30,12 @@ class ArmEcu:
     def tick(self, target_mm, stroke_mm, pressure_kpa, inertial) -> None:
         """Takes readings; `inertial` is roll and pitch rate, deg/s, then what gravity says, deg."""
         arms = self._truth.arms
+        if self._target_mm is None:
+            self._target_mm = list(target_mm)
+        most_mm = arms.target_mm_s * TICK_S
         for i in range(N):
-            error = target_mm[i] - stroke_mm[i]
+            self._target_mm[i] += min(max(target_mm[i] - self._target_mm[i], -most_mm), most_mm)
+            error = self._target_mm[i] - stroke_mm[i]
             if abs(error) < arms.ecu_dead_mm:
                 error = 0.0
             self._sum[i] = min(max(self._sum[i] + error * TICK_S, -100.0), 100.0)
@@ -79,7 +84,7 @@ class DriveEcu:
         if mean_m_s < a.speed_threshold_m_s:
             self._sum, self.opening = [0.0, 0.0], [0.0, 0.0]
             return
-        for j, target in enumerate((target_deg, t.rear_ratio * joint_deg[0])):
+        for j, target in enumerate((target_deg, t.rear_ratio * joint_deg[0] + t.rear_offset_deg)):
             error = target - joint_deg[j]
             self._sum[j] = min(max(self._sum[j] + error * TICK_S, -40.0), 40.0)
             opening = a.kp_per_deg * t.kp * (error + a.ki_per_s * t.ki * self._sum[j])

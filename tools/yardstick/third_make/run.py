@@ -197,7 +197,9 @@ class Run:
         arm_nm = [p * lever for p, lever in zip(push, levers, strict=True)]
         joint_nm = self._joints.step(self._steer, *body.joints())
         throttle = self._heard[1] / 100.0
-        wheel_nm, ground_nm = self._drive.step(throttle, *body.wheels(), body.normal_n())
+        wheel_nm, ground_nm = self._drive.step(
+            throttle, *body.wheels(), body.normal_n(), now_s
+        )
         body.step(arm_nm, joint_nm, wheel_nm, ground_nm)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from xt28_mujoco.machine import GRAVITY_M_S2, Machine
 
+from .ecu import TICK_S
 from .truth import N, Truth
 
 # Standard deviations where the machine file has none (assumed).
@@ -26,17 +27,29 @@ class Sensors:
         self._truth, self._random, self._machine = truth.sensors, random, machine
         self._places: deque = deque()
         self._wander = np.zeros(2)
-        self._joint: list[float] | None = None
+        self._stroke_mm: np.ndarray | None = None
+        self._slow: dict[str, np.ndarray] = {}
         a = machine.arms
         self._areas = (a.area_bore_m2, a.area_rod_m2)
 
     def _noise(self, deviation: float, count: int) -> np.ndarray:
         return deviation * self._truth.noise * self._random.standard_normal(count)
 
+    def _lagged(self, reading: str, there, lag_s: float) -> np.ndarray:
+        """What a reading of every tick is behind a first-order lag."""
+        keep = math.exp(-TICK_S / lag_s) if lag_s > 0.0 else 0.0
+        before = self._slow.get(reading, there)
+        self._slow[reading] = keep * np.asarray(before) + (1.0 - keep) * np.asarray(there)
+        return self._slow[reading]
+
     def strokes_mm(self, stroke_m) -> list[int]:
         """Cut to whole millimetres."""
         s = self._truth
-        read = np.asarray(stroke_m) * 1e3 * s.stroke_scale + s.stroke_bias_mm
+        there = np.asarray(stroke_m) * 1e3
+        half = 0.5 * s.stroke_play_mm
+        before = there if self._stroke_mm is None else self._stroke_mm
+        self._stroke_mm = np.clip(before, there - half, there + half)
+        read = self._stroke_mm * s.stroke_scale + s.stroke_bias_mm
         return [max(0, int(mm)) for mm in read + self._noise(STROKE_MM, N)]
 
     def pressures_kpa(self, oil_n) -> list[float]:
@@ -44,7 +57,7 @@ class Sensors:
         s, idle = self._truth, self._machine.hydraulics.return_pressure_pa
         bore, rod = self._areas
         noise = self._noise(PRESSURE_KPA, 2 * N)
-        read = []
+        chambers = []
         for i, push in enumerate(oil_n):
             # The side that carries nothing idles at the return's pressure, the other balances.
             if push >= 0.0:
@@ -52,10 +65,12 @@ class Sensors:
             else:
                 a_pa = idle * rod / bore
                 b_pa = (a_pa * bore - push) / rod
-            for side, pa in enumerate((a_pa, b_pa)):
-                bias = s.pressure_bias_kpa[i] if side == 0 else 0.0
-                kpa = pa * 1e-3 * s.pressure_scale[i] + bias + noise[2 * i + side]
-                read.append(min(max(kpa, 0.0), FULL_RANGE_KPA))
+            chambers += [a_pa, b_pa]
+        read = []
+        for k, pa in enumerate(self._lagged("pressure", chambers, s.pressure_lag_s)):
+            bias = s.pressure_bias_kpa[k // 2] if k % 2 == 0 else 0.0
+            kpa = float(pa) * 1e-3 * s.pressure_scale[k // 2] + bias + noise[k]
+            read.append(min(max(kpa, 0.0), FULL_RANGE_KPA))
         return read
 
     def inertial(self, force_m_s2, rate_rad_s) -> tuple[float, float, float, float]:
@@ -72,18 +87,16 @@ class Sensors:
 
     def wheels_rpm(self, rate_rad_s) -> np.ndarray:
         """Signed speeds of the wheels beside their arms."""
-        rpm = np.asarray(rate_rad_s) * 60.0 / math.tau * self._truth.wheel_scale
-        return rpm + self._noise(WHEEL_RPM, N)
+        s = self._truth
+        slow = self._lagged("wheel", np.asarray(rate_rad_s), s.wheel_lag_s)
+        return slow * 60.0 / math.tau * s.wheel_scale + self._noise(WHEEL_RPM, N)
 
     def joints_deg(self, angle_rad) -> list[float]:
         """Both joints, in hundredths."""
         bias, scale = self._truth.joint_bias_deg, self._truth.joint_scale
         there = [bias + scale * math.degrees(a) for a in angle_rad]
-        if self._joint is None:
-            self._joint = there
-        keep = math.exp(-0.01 / self._truth.joint_lag_s) if self._truth.joint_lag_s > 0.0 else 0.0
-        self._joint = [keep * y + (1.0 - keep) * x for x, y in zip(there, self._joint, strict=True)]
-        return [round(x, 2) for x in np.array(self._joint) + self._noise(JOINT_DEG, 2)]
+        slow = self._lagged("joint", there, self._truth.joint_lag_s)
+        return [round(x, 2) for x in slow + self._noise(JOINT_DEG, 2)]
 
     def antenna_m(self) -> np.ndarray:
         """Where the antenna is on the front frame."""
@@ -108,7 +121,8 @@ class Sensors:
         position = position + self._noise(m.gnss_position_m, 3)
         position[:2] += self._wander
         velocity = velocity + spread * self._noise(1.0, 3)
-        return position, velocity, heading + self._noise(m.gnss_heading_rad, 1)[0]
+        heading += math.radians(s.heading_bias_deg) + self._noise(m.gnss_heading_rad, 1)[0]
+        return position, velocity, heading
 
 
 def specific_force(acceleration_m_s2, turn, gravity_m_s2) -> np.ndarray:

@@ -47,7 +47,13 @@ class Arms:
     kp: np.ndarray = per_wheel(1.0)
     ki: np.ndarray = per_wheel(1.0)
     ecu_dead_mm: float = 0.0
+    # How fast the ECU's own target follows the one that it is sent.
+    target_mm_s: float = np.inf
     fade: float = 0.0
+    # A spool that sticks stays where it is until it is asked for this much more or less.
+    stick: np.ndarray = per_wheel(0.0)
+    # Longest stroke that anything in the way leaves.
+    stop_m: np.ndarray = per_wheel(np.inf)
 
 
 @dataclass
@@ -63,6 +69,7 @@ class Steering:
     ki: float = 1.0
     rear_lag_s: float = 0.0
     rear_ratio: float = 0.56
+    rear_offset_deg: float = 0.0
 
 
 @dataclass
@@ -79,6 +86,10 @@ class Drive:
     flat_nm: np.ndarray = per_wheel(0.0)
     droop_per_w: float = 0.0
     power_w: float = 150e3
+    # Share of its torque that the second circuit's worn pump still makes.
+    second_circuit: float = 1.0
+    # Share by which the engine's speed sways.
+    surge: float = 0.0
 
 
 @dataclass
@@ -113,14 +124,19 @@ class Sensors:
 
     stroke_bias_mm: np.ndarray = per_wheel(0.0)
     stroke_scale: np.ndarray = per_wheel(1.0)
+    # Play of what moves the sensor.
+    stroke_play_mm: np.ndarray = per_wheel(0.0)
     pressure_bias_kpa: np.ndarray = per_wheel(0.0)
     pressure_scale: np.ndarray = per_wheel(1.0)
+    pressure_lag_s: float = 0.0
     imu_roll_deg: float = 0.0
     imu_pitch_deg: float = 0.0
     imu_keep_roll: float = 0.995
     imu_keep_pitch: float = 0.99
     wheel_scale: np.ndarray = per_wheel(1.0)
+    wheel_lag_s: float = 0.0
     gnss_late_s: float = 0.0
+    heading_bias_deg: float = 0.0
     antenna_ahead_m: float = 0.0
     antenna_left_m: float = 0.0
     wander_m: float = 0.0

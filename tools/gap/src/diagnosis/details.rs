@@ -11,7 +11,6 @@ mod traces;
 mod whole;
 
 use rayon::prelude::*;
-use xt28_machine::Wheel;
 use xt28_sim::Effects;
 
 use super::generator::{Generator, Residual, STEP_S};
@@ -128,12 +127,4 @@ fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, n) =
         values.filter(|v| v.is_finite()).fold((0.0, 0_usize), |(sum, n), v| (sum + v * v, n + 1));
     (n > 0).then(|| (sum / n as f64).sqrt())
-}
-
-/// The wheel whose arm a generator drives.
-const fn wheel_of(generator: Generator) -> Option<Wheel> {
-    match generator {
-        Generator::ArmStroke(wheel) | Generator::ArmEcu(wheel) => Some(wheel),
-        _ => None,
-    }
 }

@@ -2,7 +2,7 @@
 
 use xt28_machine::{Machine, Wheel};
 
-use super::{Pair, rms, wheel_of};
+use super::{Pair, rms};
 use crate::diagnosis::evidence::{BEND_RAD, SHUT};
 use crate::diagnosis::excitation::UNLOADED_N;
 use crate::diagnosis::generator::SAMPLES_PER_RESIDUAL;
@@ -52,7 +52,7 @@ pub(super) fn map(inquiry: &Inquiry, pairs: &[Pair]) -> Vec<RegimeGaps> {
     let mut rows: Vec<RegimeGaps> = Vec::new();
     for first in pairs.iter().filter(|pair| pair.run == 0) {
         let same = || pairs.iter().filter(|pair| pair.generator == first.generator);
-        let wheel = wheel_of(first.generator);
+        let wheel = first.generator.wheel();
         let usual_n = wheel.map_or(f64::NAN, |wheel| usual_load_n(inquiry, wheel));
         let gap = |regime: Option<usize>| {
             rms(same().flat_map(|pair| {

@@ -40,7 +40,7 @@ pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64
     if after.samples < SAMPLES_MIN {
         return 0.0;
     }
-    let [floor, share] = floor_and_share(names, after.generator, after.signal);
+    let [floor, share] = floor_and_share_of(names, before, explained);
     // A wheel that lifts jolts arms and attitude; nothing jolts the pressure that a law asks for, and
     // what is late shows there for moments alone.
     let jolts = after.signal != Signal::DrivePressure;
@@ -49,16 +49,25 @@ pub(super) fn excess(names: &[&str], [before, after]: [&Left; 2], explained: f64
 }
 
 /// How large the bump of `after` that comes a third time is beside the largest that a right answer, which is
-/// one of `names` or both, leaves where `before` was there.
-pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2]) -> f64 {
+/// one of `names` or both, leaves where `before` was there and squares of `explained` floors on average are explained.
+pub(super) fn recurring(names: &[&str], [before, after]: [&Left; 2], explained: f64) -> f64 {
     // A controller that took another of a bunch of commands is off by as much as the target had moved, and is
     // again with the next bunch: no bump is too large for that, and none comes too often.
     let bunches = names.contains(&"command-jitter");
     if after.samples < SAMPLES_MIN || bunches && answers_commands(after) {
         return 0.0;
     }
-    let [floor, share] = floor_and_share(names, after.generator, after.signal);
+    let [floor, share] = floor_and_share_of(names, before, explained);
     after.recurring / (RECURRING * floor + share * before.recurring)
+}
+
+/// [`floor_and_share`] of a gap of which squares of `explained` floors on average are explained: a law that explains
+/// little of a gap leaves the rest of it to something else, however vague it is.
+fn floor_and_share_of(names: &[&str], before: &Left, explained: f64) -> [f64; 2] {
+    let [floor, share] = floor_and_share(names, before.generator, before.signal);
+    let of_gap = (explained / before.square.max(f64::MIN_POSITIVE)).sqrt();
+    let [_, of_any] = floor_and_share(&[], before.generator, before.signal);
+    [floor, share.min(of_gap).max(of_any)]
 }
 
 /// What a right answer, which is one of `names` or both, may leave of `signal`: floors, and a share of the gap.
@@ -107,7 +116,7 @@ mod tests {
     fn a_vague_law_may_leave_more_where_it_is_vague() {
         let of = |name: &str, signal: Signal| {
             let at = |floors| left(Generator::Stance, signal, floors, floors);
-            excess(&[name], [&at(10.0), &at(4.0)], 0.0)
+            excess(&[name], [&at(10.0), &at(4.0)], 49.0)
         };
         assert!(of("payload", Signal::Weight) > 2.0);
         assert!(of("seal-stiction", Signal::Weight) < 1.0);
@@ -122,6 +131,23 @@ mod tests {
         assert!(of("rolling-resistance", 4.3_f64.powi(2)) < 1.1);
         assert!(of("rolling-resistance", 0.0) > 1.5);
         assert!(of("payload", 4.3_f64.powi(2)) > 1.5);
+    }
+
+    #[test]
+    fn a_vague_law_leaves_no_more_of_a_gap_than_it_explains() {
+        let stroke = |floors, recurring| {
+            let of = left(Generator::ArmStroke(Wheel::Fr), Signal::Stroke, floors, floors);
+            Left { recurring, ..of }
+        };
+        let (before, after) = (stroke(21.6, 62.0), stroke(20.0, 50.0));
+        for (explained, is_excused) in [(0.0, false), (8.0, false), (20.0, true)] {
+            let square = f64::powi(explained, 2);
+            let names = ["stroke-bias", "standstill-drag"];
+            let times = excess(&names, [&before, &after], square);
+            assert_eq!(times < 1.5, is_excused, "{explained} explained: {times}");
+            let times = recurring(&names, [&before, &after], square);
+            assert_eq!(times < 1.5, is_excused, "{explained} explained: {times}");
+        }
     }
 
     #[test]
@@ -141,7 +167,7 @@ mod tests {
                 let evenly = left(Generator::ArmStroke(Wheel::Ml), Signal::Stroke, 20.0, 0.5);
                 Left { recurring, ..evenly }
             };
-            recurring(&[name], [&at(was), &at(is)])
+            recurring(&[name], [&at(was), &at(is)], 400.0)
         };
         assert!(of("valve-lag", 3.0, 3.0) < 1.0);
         assert!(of("valve-lag", 70.0, 28.0) > 2.0);
@@ -153,7 +179,7 @@ mod tests {
     fn commands_that_come_in_bunches_leave_bumps_where_a_controller_answers_them() {
         let of = |name, generator, signal| {
             let at = |recurring| Left { recurring, ..left(generator, signal, 20.0, 0.5) };
-            recurring(&[name], [&at(40.0), &at(40.0)])
+            recurring(&[name], [&at(40.0), &at(40.0)], 100.0)
         };
         let arm = (Generator::ArmEcu(Wheel::Fr), Signal::ArmOpening);
         let drive = (Generator::Drive, Signal::DrivePressure);

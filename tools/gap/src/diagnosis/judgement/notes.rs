@@ -109,9 +109,18 @@ impl Findings {
             )
         };
         let fitted = self.signals.iter().map(|of| &of.alone);
-        let both = fitted.chain(self.held_out.signals.iter().map(|of| &of.unbent));
-        let worst = both.max_by(|a, b| a.square.total_cmp(&b.square))?;
-        (tells(worst.signal) && worst.square > WHEELS_APART * WHEELS_APART).then(|| {
+        let all: Vec<&Left> =
+            fitted.chain(self.held_out.signals.iter().map(|of| &of.unbent)).collect();
+        let worst = all.iter().max_by(|a, b| a.square.total_cmp(&b.square))?;
+        let is_apart = |left: &Left| left.square > WHEELS_APART * WHEELS_APART;
+        // Where wheels are exchanged, each of them is off.
+        let arm = worst.generator.wheel();
+        let is_one_arm = arm.is_some()
+            && all.iter().all(|left| {
+                left.generator.wheel().is_none_or(|wheel| Some(wheel) == arm) || !is_apart(left)
+            });
+        let is_another_order = tells(worst.signal) && is_apart(worst) && !is_one_arm;
+        is_another_order.then(|| {
             "wheels in another order than the mapping has them look like this too: compare the names of \
              wheels in the DBC and the mapping with the machine"
                 .to_owned()
@@ -153,6 +162,7 @@ impl Findings {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
     use super::super::super::generator::Generator;
@@ -202,6 +212,21 @@ mod tests {
         assert!(of(Signal::Roll, 18.0));
         assert!(!of(Signal::Roll, 3.0));
         assert!(!of(Signal::Pitch, 18.0));
+    }
+
+    #[test]
+    fn an_arm_that_is_off_alone_is_not_in_another_place() {
+        let of = |other: f64| {
+            let arm = |wheel, floors: f64| {
+                let (arm, square) = (Generator::ArmStroke(wheel), floors * floors);
+                let left = Left::evenly(arm, Signal::Stroke, square, 30.0);
+                SignalFindings::of([left, left])
+            };
+            let signals = vec![arm(Wheel::Bl, 22.0), arm(Wheel::Mr, other)];
+            Findings { signals, ..Findings::default() }.another_order().is_some()
+        };
+        assert!(!of(1.3));
+        assert!(of(12.0));
     }
 
     #[test]

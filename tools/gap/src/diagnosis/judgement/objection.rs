@@ -80,8 +80,8 @@ impl Findings {
     /// Bumps that are no accident: they are hidden in no mean.
     fn recurring(&self) -> impl Iterator<Item = Objection> {
         let names = self.names();
-        self.signals.iter().map(move |SignalFindings { unbent, after, .. }| Objection {
-            times: recurring(&names, [unbent, after]),
+        self.signals.iter().map(move |of @ SignalFindings { unbent, after, .. }| Objection {
+            times: recurring(&names, [unbent, after], of.explained_square()),
             why: format!(
                 "{:.0} floors are left of the {} of {} again and again",
                 after.recurring,
@@ -100,7 +100,7 @@ impl Findings {
         let HeldOut { signals, shifts } = &self.held_out;
         let strange = signals.iter().filter(|of| of.after.square > STRANGE * of.unbent.square);
         let left = strange.map(move |HeldOutSignal { unbent, after }| Objection {
-            times: excess(&names, [unbent, after], 0.0) / HELD,
+            times: excess(&names, [unbent, after], unbent.square) / HELD,
             why: format!("{} in the runs held out", how_much([unbent, after])),
             at: Some((after.generator, after.signal)),
             is_held_out: true,

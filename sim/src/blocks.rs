@@ -2,6 +2,7 @@
 
 mod accumulator;
 mod arm;
+mod curve;
 mod cylinder;
 mod drive;
 mod flow_sharing;
@@ -11,7 +12,7 @@ mod steering;
 mod tyre;
 mod valve;
 
-pub use accumulator::Accumulator;
+pub use accumulator::{Accumulator, Pressed};
 pub use arm::{Arm, ArmInput, ArmState};
 pub use cylinder::{Cylinder, CylinderForce, CylinderMotion, CylinderState};
 pub use drive::{Drive, DriveInput, DriveOutput, DriveState};

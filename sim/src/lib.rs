@@ -29,7 +29,7 @@ pub use actuation::Actuation;
 pub use blocks::{
     Accumulator, Arm, ArmInput, ArmState, Cylinder, CylinderForce, CylinderMotion, CylinderState,
     Drive, DriveInput, DriveOutput, DriveState, FlowSharing, Lock, PATCHES_MAX, PatchInput,
-    PatchState, Patches, Steering, SteeringInput, SteeringState, Tyre, Valve, ValveState,
+    PatchState, Patches, Pressed, Steering, SteeringInput, SteeringState, Tyre, Valve, ValveState,
     slip_trim_nm,
 };
 pub use bodies::{Bodies, HingeMotion, HingeSpring, Loads, Motion, Placed, RollingDrag, Wrench};

@@ -7,24 +7,6 @@ use crate::effects::AccumulatorGas;
 /// Stiffness of the oil without gas, N/m (assumed: some 1 GPa of oil modulus on a quarter of a metre of
 /// the bore).
 pub(super) const OIL_STIFFNESS_N_M: f64 = 3.0e7;
-/// Share of its length by which a step of Newton's rule moves the end of the gas at most where that is then known to
-/// rounding, as a step leaves about the square of the one before; and steps after which it is at the latest.
-const SOLVED: f64 = 1.0e-8;
-const STEPS: usize = 64;
-/// Least share of its length from which it is sought.
-const LEAST_LEFT: f64 = 1.0e-3;
-/// Share of its length by which the gas is led on by a series of few terms.
-const SHORT: f64 = 0.02;
-/// One over the number of each of its terms: of that share, and exponents up to 2, more are below rounding.
-const SERIES: [f64; 10] = {
-    let mut inverse = [0.0; 10];
-    let mut k = 0;
-    while k < inverse.len() {
-        inverse[k] = 1.0 / (k as f64 + 1.0);
-        k += 1;
-    }
-    inverse
-};
 /// Pressure of the atmosphere, Pa: gas laws take absolute pressures.
 const ATMOSPHERE_PA: f64 = 1.013e5;
 
@@ -44,8 +26,21 @@ pub struct Accumulator {
     /// What atmosphere and return pressure hold against it, N.
     back_n: f64,
     exponent: f64,
-    /// Compression beyond which the law goes on straight, m: at the relief valve's force.
-    top_m: f64,
+    /// Share of its length that is left of it at the relief valve's force, up to which the law is made.
+    least: f64,
+}
+
+/// What an accumulator does where its gas has some length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressed {
+    /// How much further the valve has filled the cylinder than it is long, m.
+    pub compression_m: f64,
+    /// Force, N.
+    pub force_n: f64,
+    /// Slope of the force over the compression, N/m.
+    pub slope_n_m: f64,
+    /// Slope of that, N/m².
+    pub bend_n_m2: f64,
 }
 
 impl Accumulator {
@@ -61,109 +56,39 @@ impl Accumulator {
         let filling_m = (precharge_n - back_n) / OIL_STIFFNESS_N_M;
         let filled = (empty_n / precharge_n).powf(gas.exponent.recip());
         let gas_m = gas.volume_m3 / a.area_bore_m2 * filled;
-        let left = (precharge_n / (a.force_max_n + back_n)).powf(1.0 / gas.exponent);
-        let top_m = filling_m.max(a.force_max_n / OIL_STIFFNESS_N_M + gas_m * (1.0 - left));
-        Self { filling_m, gas_m, precharge_n, back_n, exponent: gas.exponent, top_m }
+        let least = (precharge_n / (a.force_max_n + back_n)).powf(gas.exponent.recip()).min(1.0);
+        Self { filling_m, gas_m, precharge_n, back_n, exponent: gas.exponent, least }
     }
 
-    /// Force, N, and its slope, N/m, at `compression_m`: how much further the valve has filled the
-    /// cylinder than it is long.
+    /// Lengths of the gas that come closer in the same proportion from one to the next, from empty to pressed by the
+    /// relief valve's force, and what it does at each.
     #[must_use]
-    pub fn spring(&self, compression_m: f64) -> [f64; 2] {
-        if compression_m <= self.filling_m {
-            return [OIL_STIFFNESS_N_M * compression_m, OIL_STIFFNESS_N_M];
-        }
-        let beyond_m = (compression_m - self.top_m).max(0.0);
-        let [gas_n, gas_n_m] = self.gas(compression_m - beyond_m);
-        let slope_n_m = gas_n_m * OIL_STIFFNESS_N_M / (gas_n_m + OIL_STIFFNESS_N_M);
-        [gas_n - self.back_n + slope_n_m * beyond_m, slope_n_m]
+    pub fn pressed<const KNOTS: usize>(&self) -> [Pressed; KNOTS] {
+        let shorter = self.least.powf(((KNOTS - 1) as f64).recip());
+        let heavier = shorter.powf(-self.exponent);
+        let (mut left, mut gas_n) = (1.0, self.precharge_n);
+        core::array::from_fn(|_| {
+            let pressed = self.at(left, gas_n);
+            left *= shorter;
+            gas_n *= heavier;
+            pressed
+        })
     }
 
-    /// Compression at which oil begins to come in, m, and by how much the slope changes there, N/m: from the
-    /// oil's alone to that of oil and gas behind one another.
-    #[must_use]
-    pub(super) fn knee(&self) -> [f64; 2] {
-        let gas_n_m = self.exponent * self.precharge_n / self.gas_m;
-        let both_n_m = gas_n_m * OIL_STIFFNESS_N_M / (gas_n_m + OIL_STIFFNESS_N_M);
-        [self.filling_m, both_n_m - OIL_STIFFNESS_N_M]
-    }
-
-    /// What the gas bears, N, and its own slope, N/m, while it and the oil give way by `compression_m`.
-    ///
-    /// By Newton's rule from where the gas would be without the oil: the misfit is convex in the length
-    /// of the gas and that start too short, so every step goes towards the root and none beyond.
-    fn gas(&self, compression_m: f64) -> [f64; 2] {
-        let slope_n_m = |gas_n: f64, left: f64| self.exponent * gas_n / (left * self.gas_m);
-        let mut left = (1.0 - (compression_m - self.filling_m) / self.gas_m).max(LEAST_LEFT);
-        let mut gas_n = self.precharge_n * left.powf(-self.exponent);
-        for _ in 0..STEPS {
-            let gas_n_m = slope_n_m(gas_n, left);
-            let oil_m = (gas_n - self.back_n) / OIL_STIFFNESS_N_M;
-            let misfit_m = oil_m + self.gas_m * (1.0 - left) - compression_m;
-            let by = misfit_m / (self.gas_m * (1.0 + gas_n_m / OIL_STIFFNESS_N_M));
-            gas_n *= self.bears_more(by / left);
-            left += by;
-            if by.abs() < SOLVED {
-                break;
-            }
+    /// What it does where `left` of its gas' length is left, which then bears `gas_n`. Force and compression are
+    /// explicit in those alone.
+    fn at(&self, left: f64, gas_n: f64) -> Pressed {
+        let force_n = gas_n - self.back_n;
+        // Gas and oil behind one another give way each by its own slope.
+        let gas_n_m = self.exponent * gas_n / (left * self.gas_m);
+        let oil_share = OIL_STIFFNESS_N_M / (gas_n_m + OIL_STIFFNESS_N_M);
+        let gas_bend_n_m2 = (self.exponent + 1.0) * gas_n_m / (left * self.gas_m);
+        Pressed {
+            compression_m: force_n / OIL_STIFFNESS_N_M + self.gas_m * (1.0 - left),
+            force_n,
+            slope_n_m: gas_n_m * oil_share,
+            bend_n_m2: gas_bend_n_m2 * oil_share.powi(3),
         }
-        [gas_n, slope_n_m(gas_n, left)]
-    }
-
-    /// How many times what it bears the gas bears once it is longer by `share` of its length: (1 + share)^-n, by its
-    /// series where that is short. Newton's steps are, and a power is most of what they cost.
-    fn bears_more(&self, share: f64) -> f64 {
-        if share.abs() > SHORT {
-            return (1.0 + share).powf(-self.exponent);
-        }
-        let (mut sum, mut term) = (1.0, 1.0);
-        for (k, inverse) in (0_u32..).zip(SERIES) {
-            term *= share * (-self.exponent - f64::from(k)) * inverse;
-            sum += term;
-            if f64::abs(term) < f64::EPSILON / 4.0 {
-                break;
-            }
-        }
-        sum
-    }
-
-    /// Compression at which `share` of this force and a linear spring of `beside_n_m` make `force_n`,
-    /// which is positive, m.
-    ///
-    /// By Newton's rule in the length of the gas, of which force and compression are explicit: the force
-    /// is convex in it, so that from the second step on every step goes towards the root.
-    #[must_use]
-    pub(super) fn compression_m(&self, share: f64, beside_n_m: f64, force_n: f64) -> f64 {
-        let oil_n_m = share * OIL_STIFFNESS_N_M + beside_n_m;
-        if force_n <= oil_n_m * self.filling_m {
-            return force_n / oil_n_m;
-        }
-        let mut left = (self.precharge_n / (force_n + self.back_n)).powf(self.exponent.recip());
-        // By the choice of that length.
-        let mut gas_n = force_n + self.back_n;
-        let gives_m = |gas_n: f64, left: f64| {
-            (gas_n - self.back_n) / OIL_STIFFNESS_N_M + self.gas_m * (1.0 - left)
-        };
-        for _ in 0..STEPS {
-            let gas_n_by_left = -self.exponent * gas_n / left;
-            let compression_m = gives_m(gas_n, left);
-            let by_left = gas_n_by_left / OIL_STIFFNESS_N_M - self.gas_m;
-            let misfit_n = share * (gas_n - self.back_n) + beside_n_m * compression_m - force_n;
-            let next = left - misfit_n / (share * gas_n_by_left + beside_n_m * by_left);
-            let by = next.max(LEAST_LEFT) - left;
-            gas_n *= self.bears_more(by / left);
-            left += by;
-            if by.abs() < SOLVED {
-                break;
-            }
-        }
-        let compression_m = gives_m(gas_n, left);
-        if compression_m <= self.top_m {
-            return compression_m;
-        }
-        let [top_n, top_n_m] = self.spring(self.top_m);
-        let short_n = force_n - share * top_n - beside_n_m * self.top_m;
-        self.top_m + short_n / (share * top_n_m + beside_n_m)
     }
 }
 
@@ -180,33 +105,30 @@ mod tests {
     fn pressure_times_volume_to_the_exponent_is_constant() {
         let (machine, gas, accumulator) = accumulator();
         let area_m2 = machine.arms.area_bore_m2;
-        let constant = |compression_m: f64| {
-            let [force_n, _] = accumulator.spring(compression_m);
+        let constant = |Pressed { compression_m, force_n, .. }: Pressed| {
             let back_n = machine.hydraulics.return_pressure_pa * machine.arms.area_rod_m2;
             let pressure_pa = (force_n + back_n) / area_m2 + ATMOSPHERE_PA;
             let oil_m3 = (compression_m - force_n / OIL_STIFFNESS_N_M) * area_m2;
             pressure_pa * (gas.volume_m3 - oil_m3).powf(gas.exponent)
         };
         let precharged = (gas.precharge_pa + ATMOSPHERE_PA) * gas.volume_m3.powf(gas.exponent);
-        for compression_m in [0.003, 0.01, 0.03, 0.06, 0.08] {
-            assert!(compression_m < accumulator.top_m);
-            assert!((constant(compression_m) / precharged - 1.0).abs() < 1e-9, "{compression_m}");
+        let all = accumulator.pressed::<9>();
+        for pressed in all {
+            assert!((constant(pressed) / precharged - 1.0).abs() < 1e-12, "{pressed:?}");
         }
+        assert!((all[8].force_n / machine.arms.force_max_n - 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn force_is_continuous_and_the_slope_is_its_derivative() {
+    fn slope_and_bend_are_the_derivatives_of_force_and_slope() {
         let (_, _, accumulator) = accumulator();
-        for knee_m in [accumulator.filling_m, accumulator.top_m] {
-            let [below, above] = [-1e-12, 1e-12].map(|d| accumulator.spring(knee_m + d)[0]);
-            assert!((above - below).abs() < 1e-3, "{knee_m}: {below} {above}");
-        }
-        for compression_m in [-0.01, 0.001, 0.02, 0.08, 0.09] {
-            let d = 1e-7;
-            let [below, above] = [-d, d].map(|d| accumulator.spring(compression_m + d)[0]);
-            let slope_n_m = (above - below) / (2.0 * d);
-            let [_, said_n_m] = accumulator.spring(compression_m);
-            assert!((slope_n_m / said_n_m - 1.0).abs() < 1e-4, "{compression_m}: {slope_n_m}");
+        for window in accumulator.pressed::<6001>().windows(3) {
+            let [before, at, after] = window else { unreachable!() };
+            let over = |of: fn(&Pressed) -> f64| {
+                (of(after) - of(before)) / (after.compression_m - before.compression_m)
+            };
+            assert!((over(|p| p.force_n) / at.slope_n_m - 1.0).abs() < 1e-3, "{at:?}");
+            assert!((over(|p| p.slope_n_m) / at.bend_n_m2 - 1.0).abs() < 1e-3, "{at:?}");
         }
     }
 
@@ -217,14 +139,14 @@ mod tests {
             let mut machine = Machine::xt28();
             machine.hydraulics.return_pressure_pa = return_pressure_pa;
             let gas = AccumulatorGas::default();
-            let accumulator = Accumulator::new(&machine, &gas);
-            let [begins_n, _] = accumulator.spring(1e-12);
-            assert!(begins_n.abs() < 1e-3, "{return_pressure_pa} Pa: {begins_n} N");
-            assert!(accumulator.filling_m >= 0.0, "{return_pressure_pa} Pa");
+            let [begins, pressed @ ..] = Accumulator::new(&machine, &gas).pressed::<9>();
+            // Up to there the oil alone gives way.
+            let made_n = OIL_STIFFNESS_N_M * begins.compression_m;
+            assert!(begins.compression_m >= 0.0, "{return_pressure_pa} Pa: {begins:?}");
+            assert!((made_n - begins.force_n).abs() < 1e-3, "{return_pressure_pa} Pa: {begins:?}");
             // The gas itself is the same, so that all of it is where it would be at any other return pressure.
             let back_n = return_pressure_pa * machine.arms.area_rod_m2;
-            for compression_m in [0.01, 0.02] {
-                let [force_n, _] = accumulator.spring(compression_m);
+            for Pressed { compression_m, force_n, .. } in pressed {
                 let pressure_pa = (force_n + back_n) / machine.arms.area_bore_m2 + ATMOSPHERE_PA;
                 let begun_pa = back_n / machine.arms.area_bore_m2 + ATMOSPHERE_PA;
                 let volume_m3 = |pressure_pa: f64| {
@@ -239,16 +161,6 @@ mod tests {
                     "{return_pressure_pa} Pa: {made_m}"
                 );
             }
-        }
-    }
-
-    #[test]
-    fn what_the_gas_bears_more_is_its_power_near_and_far() {
-        let (_, gas, accumulator) = accumulator();
-        for share in [0.0, 1e-12, -1e-7, 3e-4, -0.0199, 0.0199, 0.0201, -0.6, 4.0] {
-            let want = (1.0_f64 + share).powf(-gas.exponent);
-            let made = accumulator.bears_more(share);
-            assert!((made / want - 1.0).abs() < 1e-15, "{share}: {made}, not {want}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The gateway's core: observe, ask the policy, hold to the limits, send. No clock, no socket.
 
-use xt28_dbc::messages::{ArmStatus, DriveStatus};
+use xt28_dbc::messages::{ArmStatus, ArmTarget, ArmValve, DriveStatus, DriveTarget};
 use xt28_dbc::{EncodeError, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
 use xt28_safety::{Command, Input, Order, Phase, Stamps, State, Verdict, step};
@@ -46,6 +46,8 @@ pub struct Gateway {
     neutral_left: u32,
     writer: FrameWriter,
     bus_ok: bool,
+    /// When a command of somebody else's was heard last.
+    rival_at: Option<SimTime>,
     tally: Tally,
 }
 
@@ -77,6 +79,7 @@ impl Gateway {
             neutral_left: 0,
             writer: FrameWriter::new(machine.drive.engine_speed_rpm),
             bus_ok: true,
+            rival_at: None,
             tally: Tally::default(),
             config,
         }
@@ -87,6 +90,8 @@ impl Gateway {
         match frame.id() {
             ArmStatus::ID => self.arm_ecu.on_status(now, ArmStatus::decode(frame)),
             DriveStatus::ID => self.drive_ecu.on_status(now, DriveStatus::decode(frame)),
+            // Nobody hears its own frames.
+            ArmTarget::ID | ArmValve::ID | DriveTarget::ID => self.rival_at = Some(now),
             _ => self.sensors.on_frame(now, frame),
         }
     }
@@ -123,7 +128,7 @@ impl Gateway {
         let located = fresh.as_ref().and_then(|(at, epoch)| self.locate(*at, epoch));
         self.ask(now, located);
         let was = self.kernel.phase();
-        let input = self.input();
+        let input = self.input(now);
         self.order = Order::None;
         (self.kernel, self.verdict) =
             step(&self.config.limits, self.kernel, &input, now.as_nanos());
@@ -243,7 +248,7 @@ impl Gateway {
         }
     }
 
-    fn input(&self) -> Input {
+    fn input(&self, now: SimTime) -> Input {
         let order = if self.auto_arm && matches!(self.order, Order::None) {
             Order::Arm
         } else {
@@ -261,6 +266,12 @@ impl Gateway {
                 ..self.stamps
             },
             bus_ok: self.bus_ok,
+            // As long as an ECU's silence is waited for: then the other one is gone.
+            alone: self
+                .config
+                .limits
+                .status
+                .missed(self.rival_at.map(SimTime::as_nanos), now.as_nanos()),
         }
     }
 

@@ -330,3 +330,22 @@ fn counters_of_the_target_frames_go_on_one_by_one() {
         assert_eq!(bench.sent_of(DriveTarget::ID).unwrap().data().len(), 8);
     }
 }
+
+/// With its counters in step, either of two that command at once would take the other's acknowledgement for its own.
+#[test]
+fn a_gateway_stops_for_another_one_and_never_begins_beside_it() {
+    let mut bench = armed(Box::new(Hold));
+    let rival = bench.sent_of(DriveTarget::ID).unwrap();
+    bench.gateway.on_frame(bench.now, &rival);
+    bench.tick();
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::NotAlone));
+
+    let mut bench = Bench::new(gateway(Box::new(Hold), true), LATE);
+    for _ in 0..100 {
+        bench.gateway.on_frame(bench.now, &rival);
+        bench.tick();
+        assert!(bench.drive_target().is_none() && bench.arm_target().is_none());
+    }
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::NotAlone));
+    bench.run_until(2.0, |status| status.phase == Phase::Armed);
+}

@@ -26,6 +26,9 @@ pub(crate) fn before_arming(
     if !input.bus_ok {
         return Some(Reason::BusFault);
     }
+    if !input.alone {
+        return Some(Reason::NotAlone);
+    }
     for (stream, deadline, at_ns) in streams {
         if deadline.missed(at_ns, now_ns) {
             return Some(Reason::Stale(stream));

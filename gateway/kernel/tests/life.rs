@@ -59,8 +59,9 @@ fn a_stamp_from_the_future_is_not_fresh() {
 #[test]
 fn each_hazard_blocks_and_stays_blocked_until_re_armed() {
     type Spoil = fn(&mut xt28_safety::Input);
-    let hazards: [(Spoil, Reason); 9] = [
+    let hazards: [(Spoil, Reason); 10] = [
         (|i| i.bus_ok = false, Reason::BusFault),
+        (|i| i.alone = false, Reason::NotAlone),
         (|i| i.stamps.observation_ns = None, Reason::Stale(Stream::Observation)),
         (|i| i.stamps.policy_ns = None, Reason::Stale(Stream::Policy)),
         (|i| i.measured.stroke_m[3] = f64::NAN, Reason::MeasurementNotFinite),

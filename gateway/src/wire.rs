@@ -11,7 +11,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use xt28_bus::candump::Writer;
 use xt28_bus::socket_can::SocketError;
-use xt28_bus::{Bus, BusState, SocketCan};
+use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
@@ -126,9 +126,9 @@ impl Wire {
         self.socket.receive_drops()
     }
 
-    /// Whether the bus carries frames: the controller is not off it, and some leave.
-    pub(crate) fn is_well(&self) -> bool {
-        self.socket.state() != BusState::BusOff && self.stuck_at.is_none()
+    /// Whether the bus carries frames: the controller is not off it, was not since the last call, and some leave.
+    pub(crate) fn is_well(&mut self) -> bool {
+        !self.socket.take_bus_off() && self.stuck_at.is_none()
     }
 
     /// Whether all that passed is in the log, if one is wanted.

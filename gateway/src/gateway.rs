@@ -204,7 +204,10 @@ impl Gateway {
             self.tally.fixes_refused += 1;
             return None;
         }
-        let heading_rad = epoch.heading_rad?;
+        let Some(heading_rad) = epoch.heading_rad else {
+            self.tally.fixes_without_heading += 1;
+            return None;
+        };
         let attitude = self.sensors.attitude();
         let pose = Pose::under_antenna(antenna, self.antenna_m, heading_rad, attitude);
         let located = Located { at, pose, velocity_m_s: epoch.velocity_m_s };

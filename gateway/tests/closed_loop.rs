@@ -349,3 +349,14 @@ fn a_gateway_stops_for_another_one_and_never_begins_beside_it() {
     assert_eq!(bench.gateway.status().blocked, Some(Reason::NotAlone));
     bench.run_until(2.0, |status| status.phase == Phase::Armed);
 }
+
+#[test]
+fn fixes_without_a_heading_are_counted_as_such() {
+    let mut bench = Bench::new(gateway(goto(25.0, 0.0, 0.0), true), LATE);
+    bench.faults.gnss_headless = true;
+    (0..100).for_each(|_| bench.tick());
+    let status = bench.gateway.status();
+    assert_eq!((status.armed_at, status.located), (None, None));
+    let counts = status.counts;
+    assert_eq!([counts.fixes, counts.fixes_refused, counts.fixes_without_heading], [0, 0, 8]);
+}

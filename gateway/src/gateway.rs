@@ -149,8 +149,8 @@ impl Gateway {
         // these of low priority a command waited for the whole bus.
         if let Some((at, epoch)) = fresh {
             let antenna = self.frame.to_local(epoch.position);
-            let sent = record(&epoch, antenna, now.since(at).as_secs_f64(), out);
-            self.note(sent);
+            let latency_s = now.since(at).as_secs_f64();
+            record(&epoch, antenna, latency_s, out).into_iter().for_each(|sent| self.note(sent));
         }
     }
 
@@ -339,20 +339,20 @@ const fn precedence(order: Order) -> u8 {
 }
 
 /// A fix in the log: its position where there is one, its velocity where there is a heading too (they
-/// share a frame), its quality always.
+/// share a frame), its quality always, also where one of the others has no form on the wire.
 fn record(
     epoch: &Epoch,
     antenna: Enu,
     latency_s: f64,
     out: &mut Outbox,
-) -> Result<(), EncodeError> {
-    if epoch.quality.fix > Fix::None {
-        frames::position(antenna, out)?;
-        if let Some(heading_rad) = epoch.heading_rad {
-            frames::velocity(epoch.velocity_m_s, heading_rad, out)?;
-        }
-    }
-    frames::quality(&epoch.quality, latency_s, out)
+) -> [Result<(), EncodeError>; 3] {
+    let there = epoch.quality.fix > Fix::None;
+    let heading_rad = epoch.heading_rad.filter(|_| there);
+    [
+        if there { frames::position(antenna, out) } else { Ok(()) },
+        heading_rad.map_or(Ok(()), |rad| frames::velocity(epoch.velocity_m_s, rad, out)),
+        frames::quality(&epoch.quality, latency_s, out),
+    ]
 }
 
 impl core::fmt::Debug for Gateway {

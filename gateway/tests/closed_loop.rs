@@ -5,7 +5,9 @@ mod vehicle;
 
 use bench::{Bench, Faults};
 use gateway::policy::{Goto, Hold, Script};
-use gateway::{Attitude, Gateway, GatewayConfig, Order, Outcome, Phase, Policy, Pose, Reason};
+use gateway::{
+    Attitude, Gateway, GatewayConfig, Geodetic, Order, Outcome, Phase, Policy, Pose, Reason,
+};
 use std::path::Path;
 use vehicle::Variant;
 use xt28_dbc::messages::{
@@ -359,4 +361,17 @@ fn fixes_without_a_heading_are_counted_as_such() {
     assert_eq!((status.armed_at, status.located), (None, None));
     let counts = status.counts;
     assert_eq!([counts.fixes, counts.fixes_refused, counts.fixes_without_heading], [0, 0, 8]);
+}
+
+/// As with an origin that nobody has set: the local frame then begins on another continent.
+#[test]
+fn a_position_that_no_frame_can_say_costs_the_log_nothing_else() {
+    let machine = Machine::xt28();
+    let origin = Geodetic::from_degrees(-33.9, 18.4, 20.0);
+    let config = GatewayConfig { origin, ..GatewayConfig::new(&machine) };
+    let mut bench = Bench::new(Gateway::new(&machine, config, Box::new(Hold)), LATE);
+    bench.tick();
+    assert_eq!(bench.sent_of(GnssPosition::ID), None);
+    assert!(bench.sent_of(GnssVelocity::ID).is_some() && bench.sent_of(GnssQuality::ID).is_some());
+    assert_eq!(bench.gateway.status().counts.frames_unsent, 1);
 }

@@ -188,7 +188,8 @@ impl Run {
 
     fn tick(&mut self, now: Duration, out: &mut Outbox) -> Result<(), Problem> {
         self.gateway.on_bus(self.wire.is_well());
-        if self.arm.swap(false, Ordering::Relaxed) && !self.ending {
+        let asked = self.arm.swap(false, Ordering::Relaxed) && !self.ending;
+        if asked {
             self.gateway.order(Order::Arm);
         }
         if self.halt.load(Ordering::Relaxed) {
@@ -199,7 +200,13 @@ impl Run {
         let now = sim_time(now.max(self.start.elapsed()));
         let ran = matches!(self.gateway.status().phase, Phase::Armed);
         self.gateway.tick(now, out);
-        if ran && !matches!(self.gateway.status().phase, Phase::Armed) {
+        let status = self.gateway.status();
+        if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
+            (asked, status.phase, status.blocked)
+        {
+            eprintln!("{:8.2} s  not armed: {why}", now.as_secs_f64());
+        }
+        if ran && !matches!(status.phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
             self.wire.discard_waiting();
         }

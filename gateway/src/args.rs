@@ -92,14 +92,14 @@ impl From<LeastFix> for Fix {
 fn metres(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(m) if m > 0.0 && m.is_finite() => Ok(m),
-        _ => Err("give metres above 0".to_owned()),
+        _ => Err("give metres above 0, as 0.5".to_owned()),
     }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(s) if s > 0.0 && s <= 1e7 => Ok(s),
-        _ => Err("give seconds above 0".to_owned()),
+        _ => Err("give seconds above 0, and no more than 10000000".to_owned()),
     }
 }
 
@@ -131,6 +131,7 @@ mod tests {
             assert!(origin(bad).unwrap_err().contains("59.8,17.9,20"), "{bad}");
         }
         assert!(metres("0").is_err() && metres("inf").is_err() && metres("0.3").is_ok());
+        assert!(seconds("1e9").unwrap_err().contains("no more than"));
         assert!(seconds("nan").is_err() && seconds("-1").is_err() && seconds("0.5").is_ok());
     }
 }

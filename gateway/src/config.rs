@@ -51,3 +51,25 @@ impl GatewayConfig {
             && quality.accuracy_horizontal_m <= self.accuracy_max_m
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_machine_that_can_more_than_the_wire_says_is_held_to_the_wire() {
+        let mut machine = Machine::xt28();
+        machine.hydraulics.manual_stroke_max_m = 0.6;
+        machine.articulation.angle_max_deg = 40.0;
+        let limits = GatewayConfig::new(&machine).limits;
+        assert_eq!(limits.stroke_max_m, frames::STROKE_MAX_M);
+        assert_eq!(limits.angle_max_rad, frames::ANGLE_MAX_DEG.to_radians());
+    }
+
+    #[test]
+    fn nothing_is_driven_by_without_a_fix_however_little_is_asked() {
+        let config = GatewayConfig { fix_least: Fix::None, ..GatewayConfig::new(&Machine::xt28()) };
+        assert!(!config.may_drive_by(&Quality::default()));
+        assert!(config.may_drive_by(&Quality { fix: Fix::Single, ..Quality::default() }));
+    }
+}

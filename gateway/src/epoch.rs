@@ -231,6 +231,20 @@ mod tests {
     }
 
     #[test]
+    fn a_heading_counts_only_where_it_is_valid_and_its_fix_is() {
+        for (heading_valid, fix_ok) in [(true, true), (true, false), (false, true)] {
+            let mut collector = EpochCollector::default();
+            let mut epoch = messages(0);
+            let Message::RelPosNed(relative) = &mut epoch[2] else { unreachable!() };
+            (relative.heading_valid, relative.fix_ok) = (heading_valid, fix_ok);
+            // The fine position last: of a first epoch it is not waited for.
+            let [pvt, _, relative] = epoch;
+            let epoch = collector.push(&bytes(&[pvt, relative])).unwrap();
+            assert_eq!(epoch.heading_rad.is_some(), heading_valid && fix_ok);
+        }
+    }
+
+    #[test]
     fn messages_of_two_epochs_are_never_mixed() {
         let mut collector = EpochCollector::default();
         let [pvt, fine, _] = messages(0);

@@ -171,3 +171,34 @@ pub(crate) fn quality(
 fn saturated(value: f64) -> f64 {
     value.clamp(0.0, 65_535.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_beyond_the_wire_costs_no_frame() {
+        for (joint_rad, told_deg) in [(0.5, 25.0), (-0.5, -25.0)] {
+            let (mut writer, mut out) = (FrameWriter::new(1200.0), Outbox::default());
+            writer.actuate(&Command::rest(joint_rad), Drive::Neutral, &mut out).unwrap();
+            let target = DriveTarget::decode(&out.frames()[1]).unwrap();
+            assert_eq!(target.front_angle_deg, told_deg);
+        }
+    }
+
+    #[test]
+    fn the_longest_target_does_not_hold() {
+        assert_eq!([0.508, 0.509, 0.6].map(|m| stroke_mm(Some(m))), [508.0; 3]);
+        assert_eq!(stroke_mm(None), HOLD_MM);
+    }
+
+    #[test]
+    fn a_heading_just_short_of_a_turn_is_none() {
+        let mut out = Outbox::default();
+        for heading_rad in [-1e-9, TAU, 359.996_f64.to_radians()] {
+            out.clear();
+            velocity([0.0; 3], heading_rad, &mut out).unwrap();
+            assert_eq!(GnssVelocity::decode(&out.frames()[0]).unwrap().heading_deg, 0.0);
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! The gateway's core: observe, ask the policy, hold to the limits, send. No clock, no socket.
 
-use xt28_dbc::messages::{ArmStatus, DriveStatus};
+use xt28_dbc::messages::{ArmStatus, ArmTarget, ArmValve, DriveStatus, DriveTarget};
 use xt28_dbc::{EncodeError, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
 use xt28_safety::{Command, Input, Order, Phase, Stamps, State, Verdict, step};
@@ -46,6 +46,8 @@ pub struct Gateway {
     neutral_left: u32,
     writer: FrameWriter,
     bus_ok: bool,
+    /// When a command of somebody else's was heard last.
+    rival_at: Option<SimTime>,
     tally: Tally,
 }
 
@@ -77,6 +79,7 @@ impl Gateway {
             neutral_left: 0,
             writer: FrameWriter::new(machine.drive.engine_speed_rpm),
             bus_ok: true,
+            rival_at: None,
             tally: Tally::default(),
             config,
         }
@@ -87,6 +90,8 @@ impl Gateway {
         match frame.id() {
             ArmStatus::ID => self.arm_ecu.on_status(now, ArmStatus::decode(frame)),
             DriveStatus::ID => self.drive_ecu.on_status(now, DriveStatus::decode(frame)),
+            // Nobody hears its own frames.
+            ArmTarget::ID | ArmValve::ID | DriveTarget::ID => self.rival_at = Some(now),
             _ => self.sensors.on_frame(now, frame),
         }
     }
@@ -123,7 +128,7 @@ impl Gateway {
         let located = fresh.as_ref().and_then(|(at, epoch)| self.locate(*at, epoch));
         self.ask(now, located);
         let was = self.kernel.phase();
-        let input = self.input();
+        let input = self.input(now);
         self.order = Order::None;
         (self.kernel, self.verdict) =
             step(&self.config.limits, self.kernel, &input, now.as_nanos());
@@ -144,8 +149,8 @@ impl Gateway {
         // these of low priority a command waited for the whole bus.
         if let Some((at, epoch)) = fresh {
             let antenna = self.frame.to_local(epoch.position);
-            let sent = record(&epoch, antenna, now.since(at).as_secs_f64(), out);
-            self.note(sent);
+            let latency_s = now.since(at).as_secs_f64();
+            record(&epoch, antenna, latency_s, out).into_iter().for_each(|sent| self.note(sent));
         }
     }
 
@@ -199,7 +204,10 @@ impl Gateway {
             self.tally.fixes_refused += 1;
             return None;
         }
-        let heading_rad = epoch.heading_rad?;
+        let Some(heading_rad) = epoch.heading_rad else {
+            self.tally.fixes_without_heading += 1;
+            return None;
+        };
         let attitude = self.sensors.attitude();
         let pose = Pose::under_antenna(antenna, self.antenna_m, heading_rad, attitude);
         let located = Located { at, pose, velocity_m_s: epoch.velocity_m_s };
@@ -243,7 +251,7 @@ impl Gateway {
         }
     }
 
-    fn input(&self) -> Input {
+    fn input(&self, now: SimTime) -> Input {
         let order = if self.auto_arm && matches!(self.order, Order::None) {
             Order::Arm
         } else {
@@ -261,6 +269,12 @@ impl Gateway {
                 ..self.stamps
             },
             bus_ok: self.bus_ok,
+            // As long as an ECU's silence is waited for: then the other one is gone.
+            alone: self
+                .config
+                .limits
+                .status
+                .missed(self.rival_at.map(SimTime::as_nanos), now.as_nanos()),
         }
     }
 
@@ -325,20 +339,20 @@ const fn precedence(order: Order) -> u8 {
 }
 
 /// A fix in the log: its position where there is one, its velocity where there is a heading too (they
-/// share a frame), its quality always.
+/// share a frame), its quality always, also where one of the others has no form on the wire.
 fn record(
     epoch: &Epoch,
     antenna: Enu,
     latency_s: f64,
     out: &mut Outbox,
-) -> Result<(), EncodeError> {
-    if epoch.quality.fix > Fix::None {
-        frames::position(antenna, out)?;
-        if let Some(heading_rad) = epoch.heading_rad {
-            frames::velocity(epoch.velocity_m_s, heading_rad, out)?;
-        }
-    }
-    frames::quality(&epoch.quality, latency_s, out)
+) -> [Result<(), EncodeError>; 3] {
+    let there = epoch.quality.fix > Fix::None;
+    let heading_rad = epoch.heading_rad.filter(|_| there);
+    [
+        if there { frames::position(antenna, out) } else { Ok(()) },
+        heading_rad.map_or(Ok(()), |rad| frames::velocity(epoch.velocity_m_s, rad, out)),
+        frames::quality(&epoch.quality, latency_s, out),
+    ]
 }
 
 impl core::fmt::Debug for Gateway {

@@ -106,3 +106,37 @@ impl From<DriveStatus> for PeerReport {
         Self { state, accepted: status.accepted, counter: status.counter }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_dbc::messages::{ArmStatusMode, ArmStatusReason};
+
+    use super::*;
+
+    #[test]
+    fn an_ecu_is_ready_in_standby_and_active_alone() {
+        let ready = ArmStatusState::ALL.map(|state| {
+            let mut peer = Peer::default();
+            assert!(!peer.link(None).ready, "nothing heard");
+            let status = ArmStatus { state, ..status() };
+            peer.on_status(SimTime::ZERO, Ok(status));
+            (state, peer.link(None).ready)
+        });
+        for (state, ready) in ready {
+            let wanted = matches!(state, ArmStatusState::Standby | ArmStatusState::Active);
+            assert_eq!(ready, wanted, "{state:?}");
+        }
+    }
+
+    fn status() -> ArmStatus {
+        ArmStatus {
+            mode: ArmStatusMode::Off,
+            state: ArmStatusState::Init,
+            faults: 0,
+            accepted: 0,
+            reason: ArmStatusReason::None,
+            supply_v: 24.0,
+            counter: 0,
+        }
+    }
+}

@@ -73,6 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         freshness: Freshness::default(),
         ending: false,
         never_armed: None,
+        broke: None,
     };
     Ok(run.until_done(args))
 }
@@ -101,6 +102,8 @@ struct Run {
     /// The order to disarm was given.
     ending: bool,
     never_armed: Option<Reason>,
+    /// What ends the run, but leaves the bus to stop the machine by.
+    broke: Option<Problem>,
 }
 
 impl Run {
@@ -117,7 +120,7 @@ impl Run {
             lateness,
             frames_lost,
             frames_discarded,
-            broke: broke.or(closed),
+            broke: broke.or(self.broke).or(closed),
             interrupted,
             never_armed: self.never_armed,
             seconds,
@@ -134,7 +137,7 @@ impl Run {
             self.listen_until(due)?;
             let now = self.start.elapsed();
             lateness.note(now.saturating_sub(due));
-            self.read_gnss(&mut bytes)?;
+            self.read_gnss(&mut bytes);
             self.tick(now, &mut out)?;
             tell(now, &mut told, &self.gateway);
             self.end_if_due(now, args);
@@ -170,21 +173,23 @@ impl Run {
         }
     }
 
-    fn read_gnss(&mut self, bytes: &mut [u8]) -> Result<(), Problem> {
-        let Some(port) = &mut self.port else { return Ok(()) };
+    fn read_gnss(&mut self, bytes: &mut [u8]) {
+        let Some(port) = &mut self.port else { return };
         let at = sim_time(self.freshness.came_in(self.start.elapsed()));
-        let lost = port
-            .drain(bytes, |bytes| self.gateway.on_gnss(at, bytes))
-            .map_err(Problem::ReadGnss)?;
-        if lost {
-            eprintln!("gateway: the receiver's port was closed");
+        match port.drain(bytes, |bytes| self.gateway.on_gnss(at, bytes)) {
+            Ok(false) => {}
+            Ok(true) => eprintln!("gateway: the receiver's port was closed"),
+            Err(error) => {
+                self.port = None;
+                self.broke = Some(Problem::ReadGnss(error));
+            }
         }
-        Ok(())
     }
 
     fn tick(&mut self, now: Duration, out: &mut Outbox) -> Result<(), Problem> {
         self.gateway.on_bus(self.wire.is_well());
-        if self.arm.swap(false, Ordering::Relaxed) && !self.ending {
+        let asked = self.arm.swap(false, Ordering::Relaxed) && !self.ending;
+        if asked {
             self.gateway.order(Order::Arm);
         }
         if self.halt.load(Ordering::Relaxed) {
@@ -195,7 +200,13 @@ impl Run {
         let now = sim_time(now.max(self.start.elapsed()));
         let ran = matches!(self.gateway.status().phase, Phase::Armed);
         self.gateway.tick(now, out);
-        if ran && !matches!(self.gateway.status().phase, Phase::Armed) {
+        let status = self.gateway.status();
+        if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
+            (asked, status.phase, status.blocked)
+        {
+            eprintln!("{:8.2} s  not armed: {why}", now.as_secs_f64());
+        }
+        if ran && !matches!(status.phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
             self.wire.discard_waiting();
         }
@@ -215,7 +226,8 @@ impl Run {
             None => task_over || matches!(status.phase, Phase::Blocked(_)),
         };
         let never_armed = status.armed_at.is_none() && seconds >= args.arm_within;
-        if over || never_armed || self.interrupt.load(Ordering::Relaxed) {
+        let broke = self.broke.is_some() || !self.wire.log_is_whole();
+        if over || never_armed || broke || self.interrupt.load(Ordering::Relaxed) {
             self.ending = true;
             self.never_armed = status.blocked.filter(|_| status.armed_at.is_none());
             // A block is an end of its own; its reason stays to be told.

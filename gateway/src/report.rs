@@ -53,7 +53,23 @@ pub(crate) fn tell(finished: &Finished) {
             "{frames} frames of ours never left: the bus took none, or they were too old by then"
         );
     }
-    if let (fixes @ 1.., Some(quality)) = (status.counts.fixes_refused, status.quality) {
+    tell_fixes(status);
+}
+
+/// What stood against the receiver's fixes, as far as something did.
+fn tell_fixes(status: &Status) {
+    let counts = &status.counts;
+    if let fixes @ 1.. = counts.fixes_without_heading {
+        eprintln!(
+            "{fixes} fixes came without a heading; does the receiver see its second antenna?"
+        );
+    }
+    if let (None, epochs @ 1..) = (status.located, counts.fixes_incomplete) {
+        eprintln!(
+            "{epochs} epochs were incomplete; let the receiver send NAV-PVT and NAV-RELPOSNED"
+        );
+    }
+    if let (fixes @ 1.., Some(quality)) = (counts.fixes_refused, status.quality) {
         let (fix, accuracy_m) = (quality.fix, quality.accuracy_horizontal_m);
         eprintln!(
             "{fixes} fixes were not good enough to drive by; the last one: {fix}, {accuracy_m:.2} m"
@@ -83,6 +99,7 @@ pub(crate) fn json(finished: &Finished) -> Value {
         "ticks": { "run": lateness.ticks(), "missed": lateness.missed,
                    "allowed": counts.allowed, "clamped": counts.clamped },
         "fixes": { "used": counts.fixes, "refused": counts.fixes_refused,
+                   "without_heading": counts.fixes_without_heading,
                    "overtaken": counts.fixes_overtaken, "incomplete": counts.fixes_incomplete },
         "faults": { "gnss_stream": counts.gnss_faults, "frames_refused": counts.frames_refused,
                     "frames_unsent": counts.frames_unsent,

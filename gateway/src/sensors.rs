@@ -167,3 +167,20 @@ impl Sensors {
 const fn six([fr, fl]: [f64; 2], [mr, ml, br, bl]: [f64; 4]) -> PerWheel<f64> {
     PerWheel([fr, fl, mr, ml, br, bl])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheel_speeds_sent_again_are_no_news() {
+        let mut sensors = Sensors::new();
+        let frame = WheelSpeedSigned { fr_rpm: 10.0, counter: 7, ..WheelSpeedSigned::default() };
+        let frame = frame.encode().unwrap();
+        for at_ms in [10, 20, 30] {
+            sensors.on_frame(SimTime::from_millis(at_ms), &frame);
+        }
+        assert_eq!(sensors.wheel_rad_s.at(), Some(SimTime::from_millis(10)));
+        assert_eq!(sensors.refused(), 2);
+    }
+}

@@ -43,6 +43,8 @@ pub struct Tally {
     pub fixes: u64,
     /// Epochs without a fix, or whose fix is not good enough to drive by.
     pub fixes_refused: u64,
+    /// Epochs whose fix is good enough, but whose heading the receiver does not vouch for.
+    pub fixes_without_heading: u64,
     /// Epochs that a newer one of the same tick replaced.
     pub fixes_overtaken: u64,
     /// Epochs that were never complete.

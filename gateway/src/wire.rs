@@ -5,13 +5,13 @@
 //! wall-clock stamp; what counts of it is how long ago that was when the frame was taken.
 
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use xt28_bus::candump::Writer;
 use xt28_bus::socket_can::SocketError;
-use xt28_bus::{Bus, BusState, SocketCan};
+use xt28_bus::{Bus, SocketCan};
 use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
@@ -27,7 +27,7 @@ const RETRY_AFTER: Duration = Duration::from_millis(1);
 pub(crate) struct Wire {
     socket: SocketCan,
     start: SystemTime,
-    log: Option<Writer<BufWriter<File>>>,
+    log: Option<Log<BufWriter<File>>>,
     departures: Departures,
     /// Frames that had left when the queue was found full to the brim: until another one leaves, the bus
     /// carries nothing.
@@ -48,7 +48,7 @@ impl Wire {
                 let file = File::create(path)
                     .map_err(|source| Problem::Record { path: path.to_owned(), source })?;
                 let epoch = start.duration_since(UNIX_EPOCH).unwrap_or_default();
-                Some(Writer::new(BufWriter::new(file), interface).starting_at(epoch))
+                Some(Log::new(Writer::new(BufWriter::new(file), interface).starting_at(epoch)))
             }
         };
         Ok(Self { socket, start, log, departures: Departures::default(), stuck_at: None })
@@ -62,7 +62,7 @@ impl Wire {
             self.socket.discard_backlog();
         }
         // What was thrown away since the last call is forgotten before another frame leaves in its place.
-        self.settle(now)?;
+        self.settle(now);
         match self.socket.send(now, frame) {
             Ok(()) => self.departures.add(frame),
             Err(SocketError::BacklogFull { .. }) => {
@@ -71,15 +71,16 @@ impl Wire {
             }
             Err(error) => return Err(error.into()),
         }
-        self.settle(now)
+        self.settle(now);
+        Ok(())
     }
 
     /// Logs what has left by `now`.
-    fn settle(&mut self, now: SimTime) -> Result<(), Problem> {
+    fn settle(&mut self, now: SimTime) {
         let left = self.socket.counters().sent;
         self.stuck_at = self.stuck_at.filter(|at| *at == left);
         let gone = self.departures.settle(left, self.socket.backlog());
-        gone.iter().try_for_each(|frame| self.log(now, frame))
+        gone.iter().for_each(|frame| self.log(now, frame));
     }
 
     /// The next frame; `since_start` is the run's clock, and `emptied` when no frame was left by it.
@@ -93,7 +94,7 @@ impl Wire {
         let wall = SystemTime::now().duration_since(self.start).unwrap_or_default();
         let waited = now.saturating_sub(emptied) + SLACK;
         let at = heard_at(now, waited, wall, received.at.since(SimTime::ZERO));
-        self.log(at, &received.frame)?;
+        self.log(at, &received.frame);
         Ok(Some(received.frame))
     }
 
@@ -105,7 +106,8 @@ impl Wire {
     ) -> Result<(), Problem> {
         let most = if self.departures.wait() { RETRY_AFTER } else { timeout };
         self.socket.wait(timeout.min(most))?;
-        self.settle(SimTime::ZERO + since_start())
+        self.settle(SimTime::ZERO + since_start());
+        Ok(())
     }
 
     /// Throws away what the kernel has not taken yet.
@@ -124,24 +126,48 @@ impl Wire {
         self.socket.receive_drops()
     }
 
-    /// Whether the bus carries frames: the controller is not off it, and some leave.
-    pub(crate) fn is_well(&self) -> bool {
-        self.socket.state() != BusState::BusOff && self.stuck_at.is_none()
+    /// Whether the bus carries frames: the controller is not off it, was not since the last call, and some leave.
+    pub(crate) fn is_well(&mut self) -> bool {
+        !self.socket.take_bus_off() && self.stuck_at.is_none()
+    }
+
+    /// Whether all that passed is in the log, if one is wanted.
+    pub(crate) fn log_is_whole(&self) -> bool {
+        self.log.as_ref().is_none_or(|log| log.broke.is_none())
     }
 
     /// Writes out the log.
     pub(crate) fn close(self) -> Result<(), Problem> {
-        match self.log {
-            None => Ok(()),
-            Some(mut log) => log.flush().map_err(Problem::Log),
+        self.log.map_or(Ok(()), Log::close).map_err(Problem::Log)
+    }
+
+    fn log(&mut self, at: SimTime, frame: &Frame) {
+        if let Some(log) = &mut self.log {
+            log.write(at, frame);
+        }
+    }
+}
+
+/// A log whose disk may be full: the bus goes on without it, since the machine is still to be stopped.
+struct Log<W> {
+    writer: Writer<W>,
+    broke: Option<io::Error>,
+}
+
+impl<W: Write> Log<W> {
+    const fn new(writer: Writer<W>) -> Self {
+        Self { writer, broke: None }
+    }
+
+    fn write(&mut self, at: SimTime, frame: &Frame) {
+        if self.broke.is_none() {
+            self.broke = self.writer.write(at, frame).err();
         }
     }
 
-    fn log(&mut self, at: SimTime, frame: &Frame) -> Result<(), Problem> {
-        match &mut self.log {
-            None => Ok(()),
-            Some(log) => log.write(at, frame).map_err(Problem::Log),
-        }
+    /// What went wrong first.
+    fn close(mut self) -> io::Result<()> {
+        self.broke.map_or_else(|| self.writer.flush(), Err)
     }
 }
 
@@ -155,7 +181,22 @@ fn heard_at(now: Duration, waited: Duration, wall: Duration, stamp: Duration) ->
 
 #[cfg(test)]
 mod tests {
+    use xt28_dbc::CanId;
+
     use super::*;
+
+    #[test]
+    fn a_log_keeps_its_first_fault_to_the_end_and_writes_nothing_behind_it() {
+        let frame = Frame::new(CanId::Standard(1), &[]).unwrap();
+        let line = "(0.000000) can0 001#\n";
+        let mut disk = vec![0; line.len() + 3];
+        let mut log = Log::new(Writer::new(&mut disk[..], "can0"));
+        log.write(SimTime::ZERO, &frame);
+        assert!(log.broke.is_none());
+        (0..3).for_each(|_| log.write(SimTime::ZERO, &frame));
+        assert_eq!(log.close().unwrap_err().kind(), io::ErrorKind::WriteZero);
+        assert_eq!(disk, format!("{line}(0.").into_bytes());
+    }
 
     #[test]
     fn a_frame_is_logged_when_it_came_in_whatever_the_wall_clock_says() {

@@ -5,7 +5,9 @@ mod vehicle;
 
 use bench::{Bench, Faults};
 use gateway::policy::{Goto, Hold, Script};
-use gateway::{Attitude, Gateway, GatewayConfig, Order, Outcome, Phase, Policy, Pose, Reason};
+use gateway::{
+    Attitude, Gateway, GatewayConfig, Geodetic, Order, Outcome, Phase, Policy, Pose, Reason,
+};
 use std::path::Path;
 use vehicle::Variant;
 use xt28_dbc::messages::{
@@ -329,4 +331,47 @@ fn counters_of_the_target_frames_go_on_one_by_one() {
         before = now;
         assert_eq!(bench.sent_of(DriveTarget::ID).unwrap().data().len(), 8);
     }
+}
+
+/// With its counters in step, either of two that command at once would take the other's acknowledgement for its own.
+#[test]
+fn a_gateway_stops_for_another_one_and_never_begins_beside_it() {
+    let mut bench = armed(Box::new(Hold));
+    let rival = bench.sent_of(DriveTarget::ID).unwrap();
+    bench.gateway.on_frame(bench.now, &rival);
+    bench.tick();
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::NotAlone));
+
+    let mut bench = Bench::new(gateway(Box::new(Hold), true), LATE);
+    for _ in 0..100 {
+        bench.gateway.on_frame(bench.now, &rival);
+        bench.tick();
+        assert!(bench.drive_target().is_none() && bench.arm_target().is_none());
+    }
+    assert_eq!(bench.gateway.status().blocked, Some(Reason::NotAlone));
+    bench.run_until(2.0, |status| status.phase == Phase::Armed);
+}
+
+#[test]
+fn fixes_without_a_heading_are_counted_as_such() {
+    let mut bench = Bench::new(gateway(goto(25.0, 0.0, 0.0), true), LATE);
+    bench.faults.gnss_headless = true;
+    (0..100).for_each(|_| bench.tick());
+    let status = bench.gateway.status();
+    assert_eq!((status.armed_at, status.located), (None, None));
+    let counts = status.counts;
+    assert_eq!([counts.fixes, counts.fixes_refused, counts.fixes_without_heading], [0, 0, 8]);
+}
+
+/// As with an origin that nobody has set: the local frame then begins on another continent.
+#[test]
+fn a_position_that_no_frame_can_say_costs_the_log_nothing_else() {
+    let machine = Machine::xt28();
+    let origin = Geodetic::from_degrees(-33.9, 18.4, 20.0);
+    let config = GatewayConfig { origin, ..GatewayConfig::new(&machine) };
+    let mut bench = Bench::new(Gateway::new(&machine, config, Box::new(Hold)), LATE);
+    bench.tick();
+    assert_eq!(bench.sent_of(GnssPosition::ID), None);
+    assert!(bench.sent_of(GnssVelocity::ID).is_some() && bench.sent_of(GnssQuality::ID).is_some());
+    assert_eq!(bench.gateway.status().counts.frames_unsent, 1);
 }

@@ -26,6 +26,9 @@ pub(crate) fn before_arming(
     if !input.bus_ok {
         return Some(Reason::BusFault);
     }
+    if !input.alone {
+        return Some(Reason::NotAlone);
+    }
     for (stream, deadline, at_ns) in streams {
         if deadline.missed(at_ns, now_ns) {
             return Some(Reason::Stale(stream));
@@ -58,16 +61,22 @@ pub(crate) fn while_armed(
     if let Some(reason) = before_arming(limits, state, input, now_ns) {
         return Some(reason);
     }
-    if !input.arm.ready {
-        return Some(Reason::ArmEcuNotReady);
-    }
-    if !input.drive.ready {
-        return Some(Reason::DriveEcuNotReady);
+    if let Some(reason) = unready(input) {
+        return Some(reason);
     }
     if limits.acknowledgement.missed(Some(state.acknowledged_ns), now_ns) {
         return Some(Reason::NotAcknowledged);
     }
     None
+}
+
+/// The ECU that carries out nothing. A handshake may begin with one all the same: it waits for our frames.
+pub(crate) const fn unready(input: &Input) -> Option<Reason> {
+    match (input.arm.ready, input.drive.ready) {
+        (false, _) => Some(Reason::ArmEcuNotReady),
+        (true, false) => Some(Reason::DriveEcuNotReady),
+        (true, true) => None,
+    }
 }
 
 /// Both ECUs are ready and accept what we send.

@@ -19,6 +19,8 @@ pub struct Input {
     pub stamps: Stamps,
     /// False from bus-off until the bus is well again. (Where the interface is gone there is nobody left to ask.)
     pub bus_ok: bool,
+    /// False while somebody else commands the ECUs: they take either's frames, and acknowledge them to both.
+    pub alone: bool,
 }
 
 /// What the one in charge wants of the kernel.

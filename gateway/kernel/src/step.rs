@@ -12,15 +12,8 @@ use crate::{Arms, Command, Input, Limits, Measured, Order, hazard, limit};
 pub fn step(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Verdict) {
     let state = obey(limits, state, input, now_ns);
     match state.phase() {
-        Phase::Disarmed => {
-            let why = match input.order {
-                // The one who asked to arm learns what stands against it.
-                Order::Arm => hazard::before_arming(limits, &state, input, now_ns),
-                _ => None,
-            };
-            (State { last_ns: now_ns, ..state }, Verdict::Block(why.unwrap_or(Reason::Disarmed)))
-        }
-        Phase::Blocked(reason) => (State { last_ns: now_ns, ..state }, Verdict::Block(reason)),
+        Phase::Disarmed => stay(limits, state, input, now_ns, Reason::Disarmed),
+        Phase::Blocked(reason) => stay(limits, state, input, now_ns, reason),
         Phase::Handshake { since_ns, acknowledged } => {
             shake_hands(limits, state, input, now_ns, since_ns, acknowledged)
         }
@@ -45,6 +38,21 @@ fn obey(limits: &Limits, state: State, input: &Input, now_ns: u64) -> State {
     }
 }
 
+/// Nothing leaves, for `reason`; but one who asked to arm learns what stands against it.
+fn stay(
+    limits: &Limits,
+    state: State,
+    input: &Input,
+    now_ns: u64,
+    reason: Reason,
+) -> (State, Verdict) {
+    let why = match input.order {
+        Order::Arm if !state.emergency() => hazard::before_arming(limits, &state, input, now_ns),
+        _ => None,
+    };
+    (State { last_ns: now_ns, ..state }, Verdict::Block(why.unwrap_or(reason)))
+}
+
 fn shake_hands(
     limits: &Limits,
     state: State,
@@ -57,7 +65,8 @@ fn shake_hands(
         return block(state, reason, now_ns);
     }
     if now_ns.saturating_sub(since_ns) > limits.handshake_max_ns {
-        return block(state, Reason::HandshakeTimeout, now_ns);
+        let unready = hazard::unready(input).unwrap_or(Reason::HandshakeTimeout);
+        return block(state, unready, now_ns);
     }
     let in_step = hazard::both_in_step(limits, input);
     let acknowledged = if in_step { acknowledged.saturating_add(1) } else { 0 };

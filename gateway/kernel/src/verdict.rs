@@ -75,6 +75,8 @@ pub enum Reason {
     EmergencyStop,
     /// The bus is off or gone.
     BusFault,
+    /// Somebody else commands the ECUs.
+    NotAlone,
     /// A stream missed its deadline.
     Stale(Stream),
     /// A number in the request is NaN or infinite.
@@ -105,6 +107,7 @@ impl fmt::Display for Reason {
             Self::HandshakeTimeout => "the ECUs did not acknowledge in time",
             Self::EmergencyStop => "emergency stop",
             Self::BusFault => "bus fault",
+            Self::NotAlone => "another node on the bus commands the ECUs",
             Self::Stale(Stream::ArmStatus) => "arm ECU status lost",
             Self::Stale(Stream::DriveStatus) => "drive ECU status lost",
             Self::Stale(Stream::Sensors) => "sensor frames lost",

@@ -75,10 +75,10 @@ prop_compose! {
     fn any_input()(
         order in order(), request in proptest::option::of(command(bits().boxed())),
         measured in measured(), arm in link(), drive in link(),
-        stamps in any::<[Option<u64>; 3]>(), bus_ok in any::<bool>(),
+        stamps in any::<[Option<u64>; 3]>(), (bus_ok, alone) in any::<(bool, bool)>(),
     ) -> Input {
         let [sensors_ns, observation_ns, policy_ns] = stamps;
-        Input { order, request, measured, arm, drive, bus_ok,
+        Input { order, request, measured, arm, drive, bus_ok, alone,
             stamps: Stamps { sensors_ns, observation_ns, policy_ns } }
     }
 }

@@ -38,6 +38,31 @@ fn an_arm_order_with_a_dead_stream_stays_silent_and_says_why() {
 }
 
 #[test]
+fn an_ecu_that_never_gets_ready_is_named() {
+    let mut bench = Bench::new();
+    bench.run(Order::Arm, coast());
+    let mut last = None;
+    for _ in 0..600 {
+        let mut input = bench.input(Order::None, coast());
+        input.drive.ready = false;
+        last = Some(bench.feed(&input));
+    }
+    assert_eq!(last, Some(Verdict::Block(Reason::DriveEcuNotReady)));
+}
+
+#[test]
+fn an_order_to_arm_after_a_stop_learns_what_stands_against_it() {
+    let mut bench = Bench::armed();
+    let mut input = bench.input(Order::None, coast());
+    input.measured.roll_rad = 0.5;
+    assert_eq!(bench.feed(&input), Verdict::Block(Reason::Roll));
+    let mut input = bench.input(Order::Arm, coast());
+    input.stamps.observation_ns = None;
+    assert_eq!(bench.feed(&input), Verdict::Block(Reason::Stale(Stream::Observation)));
+    assert_eq!(bench.state.phase(), Phase::Blocked(Reason::Roll));
+}
+
+#[test]
 fn deadlines_hold_to_the_nanosecond() {
     for (late_ns, blocked) in [(0, false), (1, true)] {
         let mut bench = Bench::armed();
@@ -59,8 +84,9 @@ fn a_stamp_from_the_future_is_not_fresh() {
 #[test]
 fn each_hazard_blocks_and_stays_blocked_until_re_armed() {
     type Spoil = fn(&mut xt28_safety::Input);
-    let hazards: [(Spoil, Reason); 9] = [
+    let hazards: [(Spoil, Reason); 10] = [
         (|i| i.bus_ok = false, Reason::BusFault),
+        (|i| i.alone = false, Reason::NotAlone),
         (|i| i.stamps.observation_ns = None, Reason::Stale(Stream::Observation)),
         (|i| i.stamps.policy_ns = None, Reason::Stale(Stream::Policy)),
         (|i| i.measured.stroke_m[3] = f64::NAN, Reason::MeasurementNotFinite),

@@ -66,7 +66,7 @@ impl Script {
 
     fn new(file: ScriptFile) -> Self {
         let ends = file.commands.iter().map(|entry| entry.at_s.get_ref() + entry.ramp_s);
-        let end_s = file.end_s.unwrap_or_else(|| ends.fold(0.0, f64::max));
+        let end_s = file.end_s.map_or_else(|| ends.fold(0.0, f64::max), toml::Spanned::into_inner);
         Self { entries: file.commands, end_s, start: None, now_s: 0.0 }
     }
 
@@ -284,6 +284,8 @@ opening_percent = [10, -10, 0, 0, 30, -30]
         for (from, to, wanted) in [
             ("at_s = 2", "at_s = 0.5", "t.toml:6: at_s = 0.5 must not be before"),
             ("throttle_percent = 40", "throttle = 40", "t.toml:8: unknown field `throttle`"),
+            ("[[command]]", "end_s = 3\n[[command]]", "t.toml:2: end_s = 3 must not be before"),
+            ("\"hold\"", "\"hol\"", "t.toml:4: a stroke is a number of mm or \"hold\""),
             ("[250,", "[260,", "t.toml:3: stroke_mm = 260 must be 0 to 250"),
             ("front_angle_deg = -20", "front_angle_deg = nan", "t.toml:6: front_angle_deg = NaN"),
             ("ramp_s = 4", "arms = \"crane\"", "t.toml:7: unknown variant `crane`"),

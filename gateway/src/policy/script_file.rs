@@ -33,7 +33,7 @@ pub enum ScriptError {
 #[serde(deny_unknown_fields)]
 pub(super) struct ScriptFile {
     /// When the script is over, s; the last command's end when left out.
-    pub(super) end_s: Option<f64>,
+    pub(super) end_s: Option<Spanned<f64>>,
     #[serde(rename = "command")]
     pub(super) commands: Vec<Entry>,
 }
@@ -67,7 +67,7 @@ pub(super) enum Mode {
 
 /// A target stroke, or the word "hold".
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "a stroke is a number of mm or \"hold\"")]
 pub(super) enum Stroke {
     Target(f64),
     Hold(Hold),
@@ -102,12 +102,14 @@ impl ScriptFile {
             entry.check(before_s, limits).map_err(|problem| refuse(at, problem))?;
             before_s = *entry.at_s.get_ref();
         }
-        match file.end_s {
-            Some(end_s) if !(end_s >= before_s && end_s.is_finite()) => {
-                Err(refuse(0, format!("end_s = {end_s} must not be before the last command")))
+        if let Some(end) = &file.end_s {
+            let end_s = *end.get_ref();
+            if !(end_s >= before_s && end_s.is_finite()) {
+                let problem = format!("end_s = {end_s} must not be before the last command");
+                return Err(refuse(end.span().start, problem));
             }
-            _ => Ok(file),
         }
+        Ok(file)
     }
 }
 

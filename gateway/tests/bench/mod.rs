@@ -36,6 +36,8 @@ pub(crate) struct Faults {
     pub(crate) loads_silent: bool,
     /// The receiver gets no corrections any more.
     pub(crate) gnss_code_only: bool,
+    /// It does not vouch for the direction of its second antenna.
+    pub(crate) gnss_headless: bool,
     /// Something is in the machine's way.
     pub(crate) wheels_held: bool,
 }
@@ -266,7 +268,7 @@ impl Bench {
             heading_rad: core::f64::consts::FRAC_PI_2 - located.pose.heading_rad,
             fix_ok: true,
             position_valid: true,
-            heading_valid: true,
+            heading_valid: !self.faults.gnss_headless,
             carrier: CarrierSolution::Fixed,
             ..NavRelPosNed::default()
         };

@@ -81,6 +81,7 @@ const TESTS: &[Test] = &[
     Test { folder: "ecu-emu", test: "wires", virtual_time: true },
     Test { folder: "ecu-emu", test: "halt", virtual_time: true },
     Test { folder: "gateway", test: "full_interface", virtual_time: true },
+    Test { folder: "gateway", test: "full_disk", virtual_time: true },
 ];
 
 /// How many checks [`run_all`] has, each test program counted as one.

@@ -47,6 +47,8 @@ pub struct SocketCan {
     /// What the kernel would not take yet, oldest first.
     backlog: VecDeque<Frame>,
     state: BusState,
+    /// The controller was bus-off since somebody last asked.
+    was_off: bool,
     counters: SocketCounters,
 }
 
@@ -63,6 +65,7 @@ impl SocketCan {
             zero: SystemTime::UNIX_EPOCH,
             backlog: VecDeque::with_capacity(BACKLOG_FRAMES),
             state: BusState::ErrorActive,
+            was_off: false,
             counters: SocketCounters::default(),
         })
     }
@@ -95,6 +98,12 @@ impl SocketCan {
     #[must_use]
     pub fn counters(&self) -> SocketCounters {
         self.counters
+    }
+
+    /// Whether the controller is bus-off, or was since the last call: one that restarts soon is well again before
+    /// anybody asks for its state, and has lost frames all the same.
+    pub fn take_bus_off(&mut self) -> bool {
+        core::mem::replace(&mut self.was_off, self.state == BusState::BusOff)
     }
 
     /// Frames that wait because the kernel's transmit queue is full.
@@ -206,6 +215,7 @@ impl SocketCan {
     fn enter(&mut self, state: BusState) {
         self.state = state;
         if state == BusState::BusOff {
+            self.was_off = true;
             self.discard_backlog();
         }
     }
@@ -296,16 +306,36 @@ mod tests {
     /// A bus whose kernel is the other end of a pair of sockets.
     fn bus() -> (SocketCan, UnixDatagram) {
         let (ours, kernel) = UnixDatagram::pair().unwrap();
-        kernel.set_nonblocking(true).unwrap();
+        [&ours, &kernel].into_iter().for_each(|end| end.set_nonblocking(true).unwrap());
         let bus = SocketCan {
             socket: CanSocket::from(OwnedFd::from(ours)),
             interface: "pair".to_owned(),
             zero: SystemTime::UNIX_EPOCH,
             backlog: VecDeque::new(),
             state: BusState::ErrorActive,
+            was_off: false,
             counters: SocketCounters::default(),
         };
         (bus, kernel)
+    }
+
+    #[test]
+    fn a_bus_off_that_is_over_when_it_is_read_is_told_all_the_same() {
+        let (mut bus, kernel) = bus();
+        bus.socket.set_recv_timestamp(true).unwrap();
+        // CAN_ERR_FLAG with CAN_ERR_BUSOFF, then CAN_ERR_RESTARTED, of linux/can/error.h.
+        for class in [0x2000_0040_u32, 0x2000_0100] {
+            let mut raw = [0; 16];
+            raw[..4].copy_from_slice(&class.to_ne_bytes());
+            raw[4] = 8;
+            kernel.send(&raw).unwrap();
+        }
+        assert!(!bus.take_bus_off());
+        assert_eq!(bus.receive().unwrap(), None);
+        assert_eq!((bus.state(), bus.counters().error), (BusState::ErrorActive, 2));
+        assert_eq!([bus.take_bus_off(), bus.take_bus_off()], [true, false]);
+        bus.enter(BusState::BusOff);
+        assert_eq!([bus.take_bus_off(), bus.take_bus_off()], [true; 2], "as long as it is off");
     }
 
     #[test]

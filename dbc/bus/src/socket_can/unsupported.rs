@@ -50,6 +50,11 @@ impl SocketCan {
     }
 
     /// As on Linux.
+    pub fn take_bus_off(&mut self) -> bool {
+        match self.0 {}
+    }
+
+    /// As on Linux.
     #[must_use]
     pub fn backlog(&self) -> usize {
         match self.0 {}

@@ -62,6 +62,7 @@ impl Bench {
             drive: link,
             stamps: Stamps { sensors_ns: fresh, observation_ns: fresh, policy_ns: fresh },
             bus_ok: true,
+            alone: true,
         }
     }
 

@@ -169,8 +169,8 @@ impl Gateway {
             armed_at: self.armed_at,
             located: self.located,
             quality: self.quality,
-            arm_ecu: self.arm_ecu.state(),
-            drive_ecu: self.drive_ecu.state(),
+            arm_ecu: self.arm_ecu.report(),
+            drive_ecu: self.drive_ecu.report(),
             counts: Tally {
                 fixes_incomplete,
                 gnss_faults: parsed.bad_checksum + parsed.malformed + parsed.oversize,

@@ -30,7 +30,7 @@ pub use config::GatewayConfig;
 pub use epoch::{Fix, Quality};
 pub use gateway::Gateway;
 pub use observation::{Located, Observation};
-pub use peer::PeerState;
+pub use peer::{EcuReport, PeerState};
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
 pub use status::{Status, Tally};

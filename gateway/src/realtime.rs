@@ -204,7 +204,7 @@ impl Run {
         if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
             (asked, status.phase, status.blocked)
         {
-            eprintln!("{:8.2} s  not armed: {why}", now.as_secs_f64());
+            eprintln!("{:8.2} s  not armed: {}", now.as_secs_f64(), status.told(why));
         }
         if ran && !matches!(status.phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
@@ -240,7 +240,8 @@ impl Run {
 
 /// Says on stderr when the safety kernel changes its phase.
 fn tell(now: Duration, told: &mut Phase, gateway: &Gateway) {
-    let phase = gateway.status().phase;
+    let status = gateway.status();
+    let phase = status.phase;
     let news = core::mem::discriminant(&phase) != core::mem::discriminant(told);
     *told = phase;
     if !news {
@@ -251,7 +252,7 @@ fn tell(now: Duration, told: &mut Phase, gateway: &Gateway) {
         Phase::Disarmed => eprintln!("{seconds:8.2} s  disarmed"),
         Phase::Handshake { .. } => eprintln!("{seconds:8.2} s  handshake with both ECUs"),
         Phase::Armed => eprintln!("{seconds:8.2} s  armed"),
-        Phase::Blocked(reason) => eprintln!("{seconds:8.2} s  stopped: {reason}"),
+        Phase::Blocked(reason) => eprintln!("{seconds:8.2} s  stopped: {}", status.told(reason)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The result of a run: for people on stderr, for scripts on stdout.
 
-use gateway::{Outcome, Status};
+use gateway::{EcuReport, Outcome, Status};
 use serde_json::{Value, json};
 
 use crate::realtime::Finished;
@@ -15,7 +15,7 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
         return Some(format!("safety stop at {at}: {reason}"));
     }
     if let Some(reason) = finished.never_armed {
-        return Some(format!("never armed: {reason}"));
+        return Some(format!("never armed: {}", status.told(reason)));
     }
     match &status.outcome {
         Outcome::Failed(why) => Some(why.clone()),
@@ -95,6 +95,7 @@ pub(crate) fn json(finished: &Finished) -> Value {
             "east_m": located.pose.east_m, "north_m": located.pose.north_m,
             "heading_rad": located.pose.heading_rad,
         })),
+        "ecus": { "arm": ecu(&status.arm_ecu), "drive": ecu(&status.drive_ecu) },
         "lateness_ms": { "p99_below": lateness.p99_ms(), "worst": lateness.worst_ms() },
         "ticks": { "run": lateness.ticks(), "missed": lateness.missed,
                    "allowed": counts.allowed, "clamped": counts.clamped },
@@ -106,4 +107,10 @@ pub(crate) fn json(finished: &Finished) -> Value {
                     "frames_discarded": finished.frames_discarded,
                     "frames_lost": finished.frames_lost },
     })
+}
+
+/// What an ECU said of itself last.
+fn ecu(report: &EcuReport) -> Value {
+    let faults: Vec<String> = report.faults().collect();
+    json!({ "state": report.state.name(), "faults": faults, "refused_for": report.refusal })
 }

@@ -4,7 +4,7 @@ use xt28_machine::SimTime;
 use xt28_safety::{Phase, Reason};
 
 use crate::epoch::Quality;
-use crate::peer::PeerState;
+use crate::peer::EcuReport;
 use crate::{Located, Outcome};
 
 /// A gateway at one instant.
@@ -24,12 +24,29 @@ pub struct Status {
     pub located: Option<Located>,
     /// How good the last fix was.
     pub quality: Option<Quality>,
-    /// The arm ECU.
-    pub arm_ecu: PeerState,
-    /// The drive ECU.
-    pub drive_ecu: PeerState,
+    /// What the arm ECU said of itself last.
+    pub arm_ecu: EcuReport,
+    /// What the drive ECU said of itself last.
+    pub drive_ecu: EcuReport,
     /// What was counted so far.
     pub counts: Tally,
+}
+
+impl Status {
+    /// `reason` in words, with what the ECUs say of themselves where it is about them.
+    #[must_use]
+    pub fn told(&self, reason: Reason) -> String {
+        let arm = || format!("the arm ECU says {}", self.arm_ecu);
+        let drive = || format!("the drive ECU says {}", self.drive_ecu);
+        match reason {
+            Reason::ArmEcuNotReady => format!("{reason}; {}", arm()),
+            Reason::DriveEcuNotReady => format!("{reason}; {}", drive()),
+            Reason::NotAcknowledged | Reason::HandshakeTimeout => {
+                format!("{reason}; {}; {}", arm(), drive())
+            }
+            _ => reason.to_string(),
+        }
+    }
 }
 
 /// Counts since the start.
@@ -55,4 +72,24 @@ pub struct Tally {
     pub frames_refused: u64,
     /// Values that had no form on the wire, so that their frame was left out.
     pub frames_unsent: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Machine;
+
+    use super::*;
+    use crate::policy::Hold;
+    use crate::{Gateway, GatewayConfig};
+
+    #[test]
+    fn a_reason_that_is_about_an_ecu_comes_with_what_that_says() {
+        let machine = Machine::xt28();
+        let gateway = Gateway::new(&machine, GatewayConfig::new(&machine), Box::new(Hold));
+        let told = |reason| gateway.status().told(reason);
+        let drive = "the drive ECU says not heard";
+        assert!(told(Reason::DriveEcuNotReady).ends_with(&format!("; {drive}")));
+        assert!(told(Reason::NotAcknowledged).ends_with(&format!("says not heard; {drive}")));
+        assert_eq!(told(Reason::BusFault), "bus fault");
+    }
 }

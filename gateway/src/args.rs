@@ -56,7 +56,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", value_parser = seconds, default_value = "30")]
     pub(crate) arm_within: f64,
 
-    /// Write every frame sent and received to a candump log
+    /// Write every frame sent and received to a candump log; a file that holds something is not written over
     #[arg(long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
 

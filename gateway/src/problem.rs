@@ -22,7 +22,9 @@ pub(crate) enum Problem {
     OpenGnss { path: PathBuf, source: io::Error },
     #[error("cannot read the receiver's port: {0}; plug it in again and restart")]
     ReadGnss(io::Error),
-    #[error("{path}: cannot create the log: {source}; give --record a writable path")]
+    #[error(
+        "{path}: cannot create the log: {source}; give --record a writable path without a log in it"
+    )]
     Record { path: PathBuf, source: io::Error },
     #[error("cannot write the log: {0}; is the disk full?")]
     Log(io::Error),

@@ -45,7 +45,7 @@ impl Wire {
         let log = match record {
             None => None,
             Some(path) => {
-                let file = File::create(path)
+                let file = create(path)
                     .map_err(|source| Problem::Record { path: path.to_owned(), source })?;
                 let epoch = start.duration_since(UNIX_EPOCH).unwrap_or_default();
                 Some(Log::new(Writer::new(BufWriter::new(file), interface).starting_at(epoch)))
@@ -148,6 +148,17 @@ impl Wire {
     }
 }
 
+/// An empty file for the log. One that holds something stays as it is: the last drive's log is as easily named twice
+/// as it is hard to drive again.
+fn create(path: &Path) -> io::Result<File> {
+    let file = File::options().write(true).create(true).truncate(false).open(path)?;
+    let there = file.metadata()?;
+    if there.is_file() && there.len() > 0 {
+        return Err(io::Error::new(io::ErrorKind::AlreadyExists, "it holds something already"));
+    }
+    Ok(file)
+}
+
 /// A log whose disk may be full: the bus goes on without it, since the machine is still to be stopped.
 struct Log<W> {
     writer: Writer<W>,
@@ -184,6 +195,18 @@ mod tests {
     use xt28_dbc::CanId;
 
     use super::*;
+
+    #[test]
+    fn a_log_that_is_there_is_not_written_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("run-1.log");
+        create(&path).unwrap();
+        create(&path).expect("nothing is in it");
+        std::fs::write(&path, "(0.0) can0 001#").unwrap();
+        assert_eq!(create(&path).unwrap_err().kind(), io::ErrorKind::AlreadyExists);
+        assert_eq!(std::fs::read(&path).unwrap(), b"(0.0) can0 001#");
+        create(Path::new("/dev/null")).expect("no file to lose");
+    }
 
     #[test]
     fn a_log_keeps_its_first_fault_to_the_end_and_writes_nothing_behind_it() {

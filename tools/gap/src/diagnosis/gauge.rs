@@ -28,6 +28,16 @@ impl Gauge {
         }
     }
 
+    /// The same with `share` of it changed for `other`, as a filtered reading is while it follows a jump.
+    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
+        let between = |own: f64, other: f64| own + share * (other - own);
+        Self {
+            bias_n: between(self.bias_n, other.bias_n),
+            bore: between(self.bore, other.bore),
+            by_rod: between(self.by_rod, other.by_rod),
+        }
+    }
+
     /// Load that shows as `reading_n` while the rod chamber shows `rod_n` against it, N.
     pub(super) fn load_n(&self, reading_n: f64, rod_n: f64) -> f64 {
         (reading_n - self.bias_n) / self.bore + rod_n * self.by_rod

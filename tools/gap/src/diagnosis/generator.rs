@@ -143,6 +143,14 @@ impl Generator {
         }
     }
 
+    /// When that was read which it says of `signal` at `at_s` of a run, s.
+    pub(super) fn read_at_s(self, signal: Signal, at_s: f64) -> f64 {
+        match self {
+            Self::Stance => stance::read_at_s(signal, at_s),
+            _ => at_s,
+        }
+    }
+
     /// The wheel that it looks at, where it looks at one alone.
     #[must_use]
     pub const fn wheel(self) -> Option<Wheel> {
@@ -243,7 +251,7 @@ impl Generator {
                 ]
             }
             Self::Stance => {
-                let errors = stance::stance_errors(s, machine, effects).by_signal();
+                let errors = stance::stance_errors(s, machine, schedule).by_signal();
                 errors.map(|(signal, raw)| thinned(signal, raw)).collect()
             }
             Self::Travel => {

@@ -30,6 +30,8 @@ pub(super) struct Stack {
     pub(super) group: Vec<usize>,
     /// Instant of each value in its run, s.
     pub(super) at_s: Vec<f64>,
+    /// When that was read which it tells, s: it is of what was believed then.
+    pub(super) read_at_s: Vec<f64>,
     /// Run of each value, by its place.
     pub(super) run: Vec<usize>,
     /// All groups.
@@ -55,6 +57,7 @@ impl Stack {
             values: Vec::new(),
             group: Vec::new(),
             at_s: Vec::new(),
+            read_at_s: Vec::new(),
             run: Vec::new(),
             groups: Vec::new(),
             base: base.clone(),
@@ -66,12 +69,14 @@ impl Stack {
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
                     let at_s = i as f64 * STEP_S;
-                    let counts = value.is_finite() && at_s >= since_s;
+                    let read_at_s = generator.read_at_s(residual.signal, at_s);
+                    let counts = value.is_finite() && read_at_s >= since_s;
                     stack.mask.push(counts);
                     if counts {
                         stack.values.push(value * weight.sqrt());
                         stack.group.push(group);
                         stack.at_s.push(at_s);
+                        stack.read_at_s.push(read_at_s);
                         stack.run.push(number);
                         stack.groups[group].samples += weight;
                     }

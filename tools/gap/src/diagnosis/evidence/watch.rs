@@ -169,7 +169,7 @@ impl Watch {
         let mut before = self.stack.base_effects();
         for belief in beliefs {
             let later = self.stack.after(runs, machine, before, *belief);
-            for ((value, later), at_s) in values.iter_mut().zip(later).zip(&self.stack.at_s) {
+            for ((value, later), at_s) in values.iter_mut().zip(later).zip(&self.stack.read_at_s) {
                 if *at_s >= belief.from_s {
                     *value = later;
                 }
@@ -273,7 +273,7 @@ impl Watch {
 
     /// The base before `from_s` of every run, `values` after.
     fn stitched(&self, values: &[f64], from_s: f64) -> Vec<f64> {
-        let both = values.iter().zip(&self.stack.values).zip(&self.stack.at_s);
+        let both = values.iter().zip(&self.stack.values).zip(&self.stack.read_at_s);
         both.map(|((value, base), at_s)| if *at_s < from_s { *base } else { *value }).collect()
     }
 

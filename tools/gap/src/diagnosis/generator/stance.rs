@@ -16,6 +16,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts};
 
 use super::grade::Grade;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::signals::{Samples, Signals};
@@ -94,12 +95,25 @@ const UNKNOWN: Error = Error {
     lean_rad: [f64::NAN; 2],
 };
 
-/// Stance over a run.
+/// When that was read which the stance says of `signal` at `at_s`, s: it is looked at twice a second.
+pub(super) fn read_at_s(signal: Signal, at_s: f64) -> f64 {
+    match signal {
+        Signal::RollSway | Signal::PitchSway => instants::read_at_s(1, at_s),
+        _ => instants::read_at_s(STANDING, at_s),
+    }
+}
+
+/// Stance over a run. Of sensors that were others until late in it, what is before is as if they had always been so.
 #[must_use]
-pub(super) fn stance_errors(s: &Signals, machine: &Machine, effects: &Effects) -> StanceErrors {
+pub(super) fn stance_errors(
+    s: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+) -> StanceErrors {
+    let effects = schedule.effects;
     let parts = Parts::new(machine, effects);
     let mut carriers = INNER_SHARES.map(|inner_share| {
-        PerWheel::from_fn(|w| Carrier::new(s, machine, effects, &parts, w, inner_share))
+        PerWheel::from_fn(|w| Carrier::new(s, machine, schedule, &parts, w, inner_share))
     });
     let instants = s.instants(|| instants::instants(s, machine));
     let ground = Grade::believed(s, effects);

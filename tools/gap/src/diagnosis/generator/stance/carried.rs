@@ -1,12 +1,14 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
 use xt28_machine::{Machine, Wheel};
+use xt28_sim::effects::WheelEffects;
 use xt28_sim::{Effects, Parts};
 
 use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
 use super::strained::Seal;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::gauge::Gauge;
 use crate::diagnosis::generator::press::own_n;
 use crate::diagnosis::instant::{AtWheel, Instant};
@@ -18,8 +20,10 @@ pub(super) struct Carrier<'a> {
     wheel: Wheel,
     parts: &'a Parts,
     effects: &'a Effects,
-    /// The sensors of its pressures.
-    gauge: Gauge,
+    /// Its sensors.
+    sensing: Sensing,
+    /// What they were until an instant, s, from which on the filter follows.
+    before: [Option<(f64, Sensing)>; 2],
     /// Weight of wheel and arm that the pivot does not carry, N.
     own_n: f64,
     /// Rolling resistance per load, m.
@@ -37,17 +41,27 @@ impl<'a> Carrier<'a> {
     pub(super) fn new(
         s: &Signals,
         machine: &Machine,
-        effects: &'a Effects,
+        schedule: EffectSchedule<'a>,
         parts: &'a Parts,
         wheel: Wheel,
         inner_share: f64,
     ) -> Self {
+        let effects = schedule.effects;
+        let of =
+            |effects: &Effects| Sensing::new(machine.arms.area_bore_m2, &effects.wheels[wheel]);
+        let was = |at_s: f64, [was, is]: [&Effects; 2]| {
+            (at_s > 0.0 && was.wheels[wheel] != is.wheels[wheel]).then(|| (at_s, of(was)))
+        };
         let added = effects.wheels[wheel].rolling_resistance.added;
         Self {
             wheel,
             parts,
             effects,
-            gauge: Gauge::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
+            sensing: of(effects),
+            before: [
+                was(schedule.since_s, [&Effects::default(), schedule.before]),
+                was(schedule.from_s, [schedule.before, effects]),
+            ],
             own_n: own_n(machine, parts, wheel),
             resistance_m: (machine.wheels.rolling_resistance + added).max(0.0)
                 * machine.wheels.radius_m,
@@ -55,6 +69,15 @@ impl<'a> Carrier<'a> {
             friction: machine.wheels.friction,
             seal: seal(s, effects, wheel),
         }
+    }
+
+    /// The sensors as the filtered readings of a sample show them.
+    fn sensing_at(&self, sample: usize) -> Sensing {
+        let at_s = sample as f64 * DT_S;
+        let jumped = self.before.iter().flatten().filter(|(from_s, _)| at_s >= *from_s);
+        jumped.fold(self.sensing, |sensing, (from_s, before)| {
+            sensing.toward(before, (-(at_s - from_s) / PRESSURE_FILTER_S).exp())
+        })
     }
 
     /// Where the wheel is, and what it presses on the ground, N; its idle motor holds it by
@@ -90,9 +113,9 @@ impl<'a> Carrier<'a> {
     /// rolling, less the moment of the ground's own resistance about the axle.
     fn moments(&self, instant: &Instant) -> Moments {
         let AtWheel { stroke_m, load_n, rod_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
-        let e = &self.effects.wheels[self.wheel];
-        let stroke_m = (stroke_m - e.stroke_bias.bias_m) / e.stroke_scale.factor;
-        let oil_n = self.gauge.load_n(load_n, rod_n);
+        let sensing = self.sensing_at(instant.sample);
+        let stroke_m = (stroke_m - sensing.stroke_bias_m) / sensing.stroke_scale;
+        let oil_n = sensing.gauge.load_n(load_n, rod_n);
         let cylinder_n = oil_n - self.seal.at_n(instant.sample);
         let pose = self.parts.linkage.at_stroke(stroke_m);
         let radius_m = self.parts.radius_m;
@@ -104,6 +127,33 @@ impl<'a> Carrier<'a> {
             unheld_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * torque_nm,
             below_m,
             load_arm_m: pose.reach_m - resists_m * rolls,
+        }
+    }
+}
+
+/// How the sensors of one cylinder read.
+#[derive(Clone, Copy)]
+struct Sensing {
+    gauge: Gauge,
+    stroke_bias_m: f64,
+    stroke_scale: f64,
+}
+
+impl Sensing {
+    fn new(area_bore_m2: f64, e: &WheelEffects) -> Self {
+        Self {
+            gauge: Gauge::new(area_bore_m2, e),
+            stroke_bias_m: e.stroke_bias.bias_m,
+            stroke_scale: e.stroke_scale.factor,
+        }
+    }
+
+    fn toward(self, other: &Self, share: f64) -> Self {
+        let between = |own: f64, other: f64| own + share * (other - own);
+        Self {
+            gauge: self.gauge.toward(&other.gauge, share),
+            stroke_bias_m: between(self.stroke_bias_m, other.stroke_bias_m),
+            stroke_scale: between(self.stroke_scale, other.stroke_scale),
         }
     }
 }
@@ -156,6 +206,32 @@ mod tests {
 
     use super::*;
     use crate::diagnosis::generator::still::still;
+
+    /// A sensor that jumps does so behind the ECU's filter.
+    #[test]
+    fn a_reading_that_follows_a_jump_shows_the_load_that_is_there() {
+        let (machine, sound, w) = (Machine::xt28(), Effects::default(), Wheel::Mr);
+        let mut off = sound.clone();
+        off.wheels[w].pressure_bias.bias_pa = 0.6e6;
+        let (s, parts) = (still(10), Parts::new(&machine, &off));
+        let jump_n = 0.6e6 * machine.arms.area_bore_m2;
+        let jumps = (0..1000).map(|i| 8.0e4 + if i < 500 { 0.0 } else { jump_n });
+        let reading_n = lagged(jumps, PRESSURE_FILTER_S);
+        let load_n = |schedule: EffectSchedule<'_>, i: usize| {
+            let carrier = Carrier::new(&s, &machine, schedule, &parts, w, 1.0);
+            carrier.sensing_at(i).gauge.load_n(reading_n[i], 0.0)
+        };
+        let late = EffectSchedule { before: &sound, from_s: 5.0, effects: &off, since_s: 0.0 };
+        let known = EffectSchedule { since_s: 5.0, ..(&off).into() };
+        for i in [500, 510, 525, 550, 999] {
+            assert!((load_n(late, i) - 8.0e4).abs() < 300.0, "{i}: {}", load_n(late, i));
+            assert_eq!(load_n(known, i), load_n(late, i), "{i}");
+        }
+        assert!(
+            (load_n((&off).into(), 510) - 8.0e4).abs() > 2.0e3,
+            "without a jump none is undone"
+        );
+    }
 
     #[test]
     fn what_seals_held_before_is_gone_once_a_rod_has_slid() {

@@ -71,6 +71,14 @@ pub(super) fn held_between(values: &[f64], instants: usize, len: usize) -> Sampl
     (0..len / SAMPLES_PER_RESIDUAL).map(held).collect()
 }
 
+/// When the instant is, s, whose value [`held_between`] gives `at_s` into a run.
+#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+pub(super) fn read_at_s(instants: usize, at_s: f64) -> f64 {
+    let stride = SAMPLES_PER_INSTANT * instants;
+    let block = (at_s / DT_S).round().max(0.0) as usize / stride;
+    (SAMPLES_PER_INSTANT + stride * block) as f64 * DT_S
+}
+
 fn wheel_samples(s: &Signals, machine: &Machine, wheel: Wheel) -> impl Fn(usize) -> AtWheel {
     let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
     let stroke_m = late(s.stroke_m[wheel].clone());
@@ -140,4 +148,24 @@ fn headings(s: &Signals, motion: &Motion) -> Samples {
         turned
     };
     motion.turn_rad_s.iter().enumerate().map(step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_residual_knows_when_it_was_read() {
+        for instants in [1, STANDING] {
+            // Each instant's value is its time.
+            let step = instants * SAMPLES_PER_INSTANT;
+            let times: Samples =
+                (0..40).map(|k| (SAMPLES_PER_INSTANT + k * step) as f64 * DT_S).collect();
+            let residuals = held_between(&times, instants, 40 * step);
+            for (k, read_s) in residuals.iter().enumerate() {
+                let at_s = (k * SAMPLES_PER_RESIDUAL) as f64 * DT_S;
+                assert!((read_at_s(instants, at_s) - read_s).abs() < 1e-9, "{at_s}: {read_s}");
+            }
+        }
+    }
 }

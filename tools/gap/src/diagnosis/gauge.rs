@@ -1,4 +1,4 @@
-//! What the two pressure sensors of a cylinder make of its load.
+//! What the sensors of a cylinder make of its load and its stroke.
 
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::WheelEffects;
@@ -28,13 +28,12 @@ impl Gauge {
         }
     }
 
-    /// The same with `share` of it changed for `other`, as a filtered reading is while it follows a jump.
-    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
-        let between = |own: f64, other: f64| own + share * (other - own);
+    /// The same with `share` of it changed for `other`.
+    fn toward(self, other: &Self, share: f64) -> Self {
         Self {
-            bias_n: between(self.bias_n, other.bias_n),
-            bore: between(self.bore, other.bore),
-            by_rod: between(self.by_rod, other.by_rod),
+            bias_n: between(self.bias_n, other.bias_n, share),
+            bore: between(self.bore, other.bore, share),
+            by_rod: between(self.by_rod, other.by_rod, share),
         }
     }
 
@@ -47,6 +46,45 @@ impl Gauge {
     pub(super) fn reading_n(&self, load_n: f64, rod_n: f64) -> f64 {
         self.bore * (load_n - rod_n * self.by_rod) + self.bias_n
     }
+}
+
+/// All sensors of one cylinder, as believed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sensing {
+    /// Those of its pressures.
+    pub(super) gauge: Gauge,
+    stroke_bias_m: f64,
+    /// How far the reading of the stroke goes for the stroke.
+    pub(super) stroke_scale: f64,
+}
+
+impl Sensing {
+    /// The sensors of a cylinder whose bore has `area_bore_m2`.
+    pub(super) fn new(area_bore_m2: f64, sensors: &WheelEffects) -> Self {
+        Self {
+            gauge: Gauge::new(area_bore_m2, sensors),
+            stroke_bias_m: sensors.stroke_bias.bias_m,
+            stroke_scale: sensors.stroke_scale.factor,
+        }
+    }
+
+    /// Stroke that shows as `reading_m`, m.
+    pub(super) fn stroke_m(&self, reading_m: f64) -> f64 {
+        (reading_m - self.stroke_bias_m) / self.stroke_scale
+    }
+
+    /// The same with `share` of it changed for `other`, as a filtered reading is while it follows a jump.
+    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
+        Self {
+            gauge: self.gauge.toward(&other.gauge, share),
+            stroke_bias_m: between(self.stroke_bias_m, other.stroke_bias_m, share),
+            stroke_scale: between(self.stroke_scale, other.stroke_scale, share),
+        }
+    }
+}
+
+fn between(own: f64, other: f64, share: f64) -> f64 {
+    own + share * (other - own)
 }
 
 /// Force against the rod that the sensor of its chamber shows at sample `i`, N; the return line's where no

@@ -1,14 +1,12 @@
 //! One arm's valve and oil, driven with what was measured.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::{
-    ArmEffects, Block, CATALOGUE, LOCK_STIFFNESS, Scope, SealStiction, WheelEffects,
-};
+use xt28_sim::effects::{ArmEffects, Block, CATALOGUE, LOCK_STIFFNESS, Scope, SealStiction};
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
 use crate::diagnosis::belief::EffectSchedule;
-use crate::diagnosis::gauge::Gauge;
+use crate::diagnosis::gauge::Sensing;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Time over which the block forgets where it parted from the machine, s. Long enough that a creep of
@@ -20,13 +18,6 @@ const FORGET_S: f64 = 2.0;
 const SHUT: f64 = 0.9;
 /// Share of a tolerance below which a parameter is where it was.
 const ROUNDING: f64 = 1e-3;
-
-/// The sensors of one arm as believed.
-#[derive(Clone, Copy)]
-struct Sensing {
-    sensors: WheelEffects,
-    gauge: Gauge,
-}
 
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
@@ -59,7 +50,7 @@ impl<'a> ArmDrive<'a> {
             signals,
             wheel,
             arm: Arm::new(machine, &smooth),
-            sensing: Sensing::new(machine.arms.area_bore_m2, effects.wheels[wheel]),
+            sensing: Sensing::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
             before: None,
             anew: [None; 2],
             plays: [None; 2],
@@ -83,7 +74,8 @@ impl<'a> ArmDrive<'a> {
         // Before a base whose sensors jumped one does not look, but what the oil holds is from there.
         let before =
             if since > from && was == is { (since, sound.wheels[self.wheel]) } else { (from, was) };
-        self.before = (before.0 > 0).then(|| (before.0, Sensing::new(self.area_bore_m2, before.1)));
+        self.before =
+            (before.0 > 0).then(|| (before.0, Sensing::new(self.area_bore_m2, &before.1)));
         let becomes =
             |at: usize, [was, is]: [&Effects; 2]| is_another_arm(was, is, self.wheel).then_some(at);
         self.anew = [
@@ -143,7 +135,7 @@ impl<'a> ArmDrive<'a> {
         let mut seen_n = self.loads.reading_n[0];
         let (mut error_m, mut m_n, mut began) = (0.0, 0.0, 0);
         let step = |i: usize| {
-            let (input, s) = (self.input(i), &self.sensing(i).sensors);
+            let (input, sensing) = (self.input(i), self.sensing(i));
             if self.anew.contains(&Some(i)) {
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
                 seen_n = self.loads.reading_n[i];
@@ -156,7 +148,7 @@ impl<'a> ArmDrive<'a> {
                 state.cylinder = self.arm.resumed(&input, DT_S).cylinder;
                 (seen_n, error_m) = (self.loads.reading_n[i], f64::NAN);
             } else if is_new[i] {
-                m_n = s.stroke_scale.factor * self.give_m_n(i, seen_n, &input.motion);
+                m_n = sensing.stroke_scale * self.give_m_n(i, seen_n, &input.motion);
                 error_m = m_n * (seen_n - self.loads.reading_n[i]);
             }
             let parted_m = state.cylinder.rest_m - self.arm.rest_m(input.load_n, &input.motion);
@@ -197,10 +189,7 @@ impl<'a> ArmDrive<'a> {
 
     fn input(&self, i: usize) -> ArmInput {
         let stroke = &self.signals.stroke_m[self.wheel];
-        let truth = |i: usize| {
-            let s = &self.sensing(i).sensors;
-            (stroke[i] - s.stroke_bias.bias_m) / s.stroke_scale.factor
-        };
+        let truth = |i: usize| self.sensing(i).stroke_m(stroke[i]);
         let (now_m, before_m) = (truth(i), truth(i.saturating_sub(1)));
         // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
         let stroke_rate_m_s = (now_m - before_m) / DT_S;
@@ -222,12 +211,6 @@ impl<'a> ArmDrive<'a> {
     }
 }
 
-impl Sensing {
-    fn new(area_bore_m2: f64, sensors: WheelEffects) -> Self {
-        Self { sensors, gauge: Gauge::new(area_bore_m2, &sensors) }
-    }
-}
-
 /// Whether the arm of `wheel` is another under `is` than under `was`, by more than the rounding of a search.
 fn is_another_arm(was: &Effects, is: &Effects, wheel: Wheel) -> bool {
     if was.arms[wheel] == is.arms[wheel] {
@@ -243,6 +226,7 @@ fn is_another_arm(was: &Effects, is: &Effects, wheel: Wheel) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::still::still;
+    use crate::diagnosis::gauge::Gauge;
     use xt28_sim::effects::Effect;
 
     use super::*;

@@ -1,7 +1,6 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::WheelEffects;
 use xt28_sim::{Effects, Parts};
 
 use super::instants::PRESSURE_FILTER_S;
@@ -9,7 +8,7 @@ use super::layout::Reach;
 use super::motion::{lagged, unflickered};
 use super::strained::Seal;
 use crate::diagnosis::belief::EffectSchedule;
-use crate::diagnosis::gauge::Gauge;
+use crate::diagnosis::gauge::Sensing;
 use crate::diagnosis::generator::press::own_n;
 use crate::diagnosis::instant::{AtWheel, Instant};
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
@@ -114,10 +113,9 @@ impl<'a> Carrier<'a> {
     fn moments(&self, instant: &Instant) -> Moments {
         let AtWheel { stroke_m, load_n, rod_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
         let sensing = self.sensing_at(instant.sample);
-        let stroke_m = (stroke_m - sensing.stroke_bias_m) / sensing.stroke_scale;
         let oil_n = sensing.gauge.load_n(load_n, rod_n);
         let cylinder_n = oil_n - self.seal.at_n(instant.sample);
-        let pose = self.parts.linkage.at_stroke(stroke_m);
+        let pose = self.parts.linkage.at_stroke(sensing.stroke_m(stroke_m));
         let radius_m = self.parts.radius_m;
         let extends = self.parts.arms[self.wheel].extends;
         let below_m = extends * (pose.drop_m + radius_m) / radius_m;
@@ -127,33 +125,6 @@ impl<'a> Carrier<'a> {
             unheld_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * torque_nm,
             below_m,
             load_arm_m: pose.reach_m - resists_m * rolls,
-        }
-    }
-}
-
-/// How the sensors of one cylinder read.
-#[derive(Clone, Copy)]
-struct Sensing {
-    gauge: Gauge,
-    stroke_bias_m: f64,
-    stroke_scale: f64,
-}
-
-impl Sensing {
-    fn new(area_bore_m2: f64, e: &WheelEffects) -> Self {
-        Self {
-            gauge: Gauge::new(area_bore_m2, e),
-            stroke_bias_m: e.stroke_bias.bias_m,
-            stroke_scale: e.stroke_scale.factor,
-        }
-    }
-
-    fn toward(self, other: &Self, share: f64) -> Self {
-        let between = |own: f64, other: f64| own + share * (other - own);
-        Self {
-            gauge: self.gauge.toward(&other.gauge, share),
-            stroke_bias_m: between(self.stroke_bias_m, other.stroke_bias_m),
-            stroke_scale: between(self.stroke_scale, other.stroke_scale),
         }
     }
 }

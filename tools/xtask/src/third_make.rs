@@ -23,6 +23,9 @@ pub(crate) struct ThirdMake {
     /// What resists rolling acts between wheel and arm, as bearings do, not between wheel and ground
     #[arg(long)]
     bearings: bool,
+    /// Faults set in 8 to 14 s into every run, where they are not built in
+    #[arg(long)]
+    late: bool,
 }
 
 impl ThirdMake {
@@ -35,6 +38,9 @@ impl ThirdMake {
         command.arg(std::path::absolute(&self.out)?).args(&self.causes);
         if self.bearings {
             command.arg("--bearings");
+        }
+        if self.late {
+            command.arg("--late");
         }
         let status = command.arg(format!("--seed={}", self.seed)).status()?;
         Ok(u8::from(!status.success()))

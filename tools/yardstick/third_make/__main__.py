@@ -1,6 +1,7 @@
 """`python3 -m third_make OUT CAUSE...`: cases for `xt28 gap check --set OUT`, with answers."""
 
 import argparse
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,7 @@ def answer(name: str, seed: int, kind: str, faults) -> str:
             f'group = "{fault.group}"',
             f'scope = "{fault.scope}"',
             f'target_signal = "{fault.signal}"',
+            f"start_s = {fault.start_s}",
             f"parameters = {{ {numbers} }}",
         ]
     return "\n".join(lines) + "\n"
@@ -57,9 +59,7 @@ def write(args, seed: int, causes: list[str]) -> str:
     truth, machine = Truth(), Machine(args.machine)
     truth.drive.in_bearings = args.bearings
     tolerances(truth, random)
-    faults = [draw(cause, random) for cause in causes]
-    for fault in faults:
-        fault.put_in(truth)
+    faults = [draw(cause, random, args.late) for cause in causes]
     kind = ("null", "single", "pair")[len(faults)]
     if not all(fault.known for fault in faults):
         kind = "unknown"
@@ -70,7 +70,9 @@ def write(args, seed: int, causes: list[str]) -> str:
     scripts = drives(random)
     for number, script in enumerate(scripts, 1):
         noise = np.random.default_rng((seed, number))
-        log = Run(machine, args.dbc, truth, script, noise).log(BEGIN_S + BETWEEN_S * number)
+        log = Run(machine, args.dbc, deepcopy(truth), faults, script, noise).log(
+            BEGIN_S + BETWEEN_S * number
+        )
         (folder / f"run-{number}-{script.name}.log.gz").write_bytes(log)
     (folder / "about.toml").write_text(about(name, scripts), encoding="utf-8")
     (folder / "xt28-field.dbc").write_text(logged_database(args.dbc), encoding="utf-8")
@@ -91,6 +93,11 @@ def main() -> None:
         "--bearings",
         action="store_true",
         help="what resists rolling acts between wheel and arm, not between wheel and ground",
+    )
+    parser.add_argument(
+        "--late",
+        action="store_true",
+        help="faults set in 8 to 14 s into every run, where they are not built in",
     )
     parser.add_argument(
         "causes",

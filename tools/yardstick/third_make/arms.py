@@ -1,12 +1,12 @@
 """Six valves, cylinders and their oil: from the opening asked for to the push of the cylinder."""
 
 import math
-from collections import deque
 
 import numpy as np
 
 from xt28_mujoco.machine import Machine
 
+from .line import Line
 from .truth import N, Truth
 
 # A seal bends by its breakaway before it slips (assumed): N/m of its bristles.
@@ -48,8 +48,7 @@ class Arms:
         a, h = machine.arms, machine.hydraulics
         self._full_m_s, self._area_m2 = h.speed_full_m_s, a.area_bore_m2
         self._force_max_n, self._stroke_max_m = a.force_max_n, a.stroke_max_m
-        line = [max(1, round(d / dt_s) + 1) for d in truth.arms.delay_s]
-        self._line = [deque([0.0] * n, maxlen=n) for n in line]
+        self._line = [Line(dt_s) for _ in range(N)]
         self._slow, self._spool = [0.0] * N, [0.0] * N
         self._bristle_m = [0.0] * N
         self._gas = [
@@ -67,9 +66,7 @@ class Arms:
     def _flow(self, i: int, asked: float, time_s: float) -> float:
         """Speed of the rod that the valve lets through, m/s."""
         a, dt = self._arms, self._dt_s
-        line = self._line[i]
-        line.append(asked)
-        command = line[0]
+        command = self._line[i].step(asked, a.delay_s[i])
         self._slow[i] += (command - self._slow[i]) * min(1.0, dt / max(a.lag_s[i], dt))
         half = 0.5 * a.play[i]
         if abs(self._slow[i] - self._spool[i]) > a.stick[i]:

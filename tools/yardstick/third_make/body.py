@@ -28,18 +28,28 @@ class Body:
         self._index()
         model.dof_damping[:] = 0.0
         model.jnt_stiffness[:] = 0.0
-        self._weigh(truth)
-        for w, name in enumerate(WHEELS):
-            geom = model.geom(f"wheel_{name}").id
-            g = truth.ground
-            model.geom_friction[geom, 0] = g.friction[w]
-            model.geom_solref[geom] *= (
-                g.stiffness_n_m[w] / machine.vehicle.tyre_stiffness_n_m,
-                g.damping_n_s_m[w] / machine.vehicle.tyre_damping_n_s_m,
-            )
-        model.opt.gravity[:] = level_gravity(truth.ground.slope_along, truth.ground.slope_across)
+        self._tyre = machine.vehicle.tyre_stiffness_n_m, machine.vehicle.tyre_damping_n_s_m
+        self._own = {
+            name: getattr(model, name).copy()
+            for name in ("geom_solref", "body_mass", "body_inertia", "body_ipos")
+        }
+        self.become(truth)
         self.data = mujoco.MjData(model)
         self._stand(stroke_m)
+
+    def become(self, truth: Truth) -> None:
+        """The masses, tyres and ground that are true from now on."""
+        model, g = self.model, truth.ground
+        for name, values in self._own.items():
+            getattr(model, name)[:] = values
+        self._weigh(truth)
+        for geom, w in self._wheel_of.items():
+            model.geom_friction[geom, 0] = g.friction[w]
+            model.geom_solref[geom] *= (
+                g.stiffness_n_m[w] / self._tyre[0],
+                g.damping_n_s_m[w] / self._tyre[1],
+            )
+        model.opt.gravity[:] = level_gravity(g.slope_along, g.slope_across)
 
     def _index(self) -> None:
         model = self.model

@@ -1,12 +1,12 @@
 """Steering valves with their joints, and the hydrostatic drive with its engine."""
 
 import math
-from collections import deque
 
 import numpy as np
 
 from xt28_mujoco.machine import Machine
 
+from .line import Line
 from .truth import N, Truth
 
 SLIP_FREE_RAD_S = 4.0 * math.tau / 60.0
@@ -17,19 +17,6 @@ FADE_RAD_S = 0.05
 SURGE_HZ = 0.7
 # Below this throttle idle motors may hold their wheels.
 SHUT = 0.01
-
-
-class Line:
-    """A transport delay."""
-
-    def __init__(self, delay_s: float, dt_s: float, first: float = 0.0):
-        count = max(1, round(delay_s / dt_s) + 1)
-        self._line = deque([first] * count, maxlen=count)
-
-    def step(self, value: float) -> float:
-        """What went in a delay ago."""
-        self._line.append(value)
-        return self._line[0]
 
 
 class Joints:
@@ -43,17 +30,15 @@ class Joints:
         self._stiffness, self._damping = v.joint_stiffness_nm, v.joint_damping_nms
         self._rest = [0.0, 0.0]
         self._slow = [0.0, 0.0]
-        lags = (truth.steering.lag_s, truth.steering.lag_s + truth.steering.rear_lag_s)
-        self._lag_s = lags
-        self._line = [Line(truth.steering.delay_s, dt_s) for _ in range(2)]
+        self._line = [Line(dt_s) for _ in range(2)]
 
     def step(self, opening, angle_rad, rate_rad_s) -> list[float]:
         """Torque on both joints, Nm."""
         t, dt, torque = self._truth, self._dt_s, []
-        play = math.radians(t.play_deg) / 2.0
+        play, lags = math.radians(t.play_deg) / 2.0, (t.lag_s, t.lag_s + t.rear_lag_s)
         for j in range(2):
-            asked = self._line[j].step(opening[j])
-            self._slow[j] += (asked - self._slow[j]) * min(1.0, dt / max(self._lag_s[j], dt))
+            asked = self._line[j].step(opening[j], t.delay_s)
+            self._slow[j] += (asked - self._slow[j]) * min(1.0, dt / max(lags[j], dt))
             side = t.right_rate if self._slow[j] < 0.0 else 1.0
             rest = self._rest[j] + self._slow[j] * self._rate * t.rate * side * dt
             reach = self._twist + play
@@ -78,7 +63,7 @@ class Drive:
         self._gain, self._integral = v.circuit_gain_nms, v.mean_integral_nm
         self._rpm = d.engine_speed_rpm
         self._mean_nm, self._target = 0.0, 0.0
-        self._line = Line(truth.drive.delay_s, dt_s)
+        self._line = Line(dt_s)
         self._held_rad: list[float | None] = [None] * N
         self.circuit_nm = [0.0, 0.0]
         self.engine_rpm = d.engine_speed_rpm
@@ -88,7 +73,7 @@ class Drive:
     def step(self, throttle: float, angle, rate, normal_n, time_s: float):
         """Torques on every wheel, Nm: between it and its arm, and of the ground."""
         t, dt, bound = self._truth, self._dt_s, self._bound_nm
-        pedal = self._line.step(throttle)
+        pedal = self._line.step(throttle, t.delay_s)
         asked = math.copysign(abs(pedal) ** t.curve, pedal) * self._full_rad_s
         self.engine_rpm = self._rpm * (1.0 - min(t.droop_per_w * max(self._power_w, 0.0), 0.6))
         self.engine_rpm *= 1.0 + t.surge * math.sin(math.tau * SURGE_HZ * time_s)

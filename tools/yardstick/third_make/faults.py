@@ -21,6 +21,8 @@ SCOPES = {
 
 TABLE = tomllib.loads(Path(__file__).with_name("faults.toml").read_text(encoding="utf-8"))
 NAMES = tuple(TABLE)
+# When a fault that sets in underway does, s.
+LATE_S = (8.0, 14.0)
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,8 @@ class Fault:
     name: str
     scope: str
     sizes: dict[str, float]
+    # When it sets in, in every run; before the log begins where it is zero.
+    start_s: float = 0.0
 
     @property
     def known(self) -> bool:
@@ -62,8 +66,8 @@ class Fault:
                     number[wheels] = new
 
 
-def draw(cause: str, random: np.random.Generator) -> Fault:
-    """A fault by its name, or NAME:SCOPE; scope and sizes drawn."""
+def draw(cause: str, random: np.random.Generator, late: bool) -> Fault:
+    """A fault by its name, or NAME:SCOPE; scope and sizes drawn, and when it sets in if that is `late`."""
     name, _, scope = cause.partition(":")
     if name not in TABLE:
         raise ValueError(f"no fault is called {name!r}; there are {', '.join(NAMES)}")
@@ -74,4 +78,6 @@ def draw(cause: str, random: np.random.Generator) -> Fault:
     for size, how in TABLE[name]["size"].items():
         sign = random.choice((-1.0, 1.0)) if how.get("either_sign") else 1.0
         sizes[size] = float(sign * random.uniform(*how["span"]))
-    return Fault(name, scope, sizes)
+    if not late or TABLE[name].get("built_in", False):
+        return Fault(name, scope, sizes)
+    return Fault(name, scope, sizes, round(float(random.uniform(*LATE_S)), 1))

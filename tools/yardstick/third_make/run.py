@@ -32,7 +32,11 @@ ARM_FRAMES = {
 class Run:
     """Everything that goes on in a drive."""
 
-    def __init__(self, machine: Machine, dbc: Path, truth: Truth, script: Script, random):
+    def __init__(
+        self, machine: Machine, dbc: Path, truth: Truth, faults, script: Script, random
+    ):
+        self._faults = sorted(faults, key=lambda fault: fault.start_s)
+        self._set_in(truth, 0.0)
         self._machine, self._truth, self._script, self._random = machine, truth, script, random
         first, _, _ = script.at(0.0)
         strokes = [mm * 1e-3 for mm in first]
@@ -58,7 +62,20 @@ class Run:
             self._tick((tick - settle) * TICK_S, tick - settle)
         return self._wire.log(begin_s)
 
+    def _set_in(self, truth: Truth, now_s: float) -> bool:
+        """Makes true what has set in by now; whether anything has that had not."""
+        due = [fault for fault in self._faults if fault.start_s <= now_s]
+        for fault in due:
+            fault.put_in(truth)
+        self._faults = self._faults[len(due) :]
+        return bool(due)
+
     def _tick(self, now_s: float, tick: int) -> None:
+        if self._set_in(self._truth, now_s):
+            self.body.become(self._truth)
+            self._gravity = level_gravity(
+                self._truth.ground.slope_along, self._truth.ground.slope_across
+            )
         self._command(now_s, tick)
         for step in range(STEPS):
             if step == round(ARM_S * RATE_HZ):

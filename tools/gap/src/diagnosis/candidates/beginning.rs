@@ -28,7 +28,7 @@ const OPEN_STEPS_S: [f64; 2] = [0.5, 0.1];
 const ALIKE: f64 = 0.1;
 /// The widest, of a test drive, and the finest step in which a beginning is looked for, s: a reading that jumps is off by several floors
 /// for a tenth of a second beside it, in every run.
-const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.03];
+const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.005];
 
 impl Docket<'_> {
     /// The same candidate setting in late, where that is worth it; one that does, at a better instant.

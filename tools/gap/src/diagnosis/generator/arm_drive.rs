@@ -1,7 +1,9 @@
 //! One arm's valve and oil, driven with what was measured.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::{ArmEffects, Block, CATALOGUE, LOCK_STIFFNESS, Scope, SealStiction};
+use xt28_sim::effects::{
+    ArmEffects, Block, CATALOGUE, LOCK_STIFFNESS, Scope, SealStiction, WheelEffects,
+};
 use xt28_sim::{Arm, ArmInput, ArmState, CylinderMotion, Effects};
 
 use super::loads::{KEPT, Loads};
@@ -18,6 +20,8 @@ const FORGET_S: f64 = 2.0;
 const SHUT: f64 = 0.9;
 /// Share of a tolerance below which a parameter is where it was.
 const ROUNDING: f64 = 1e-3;
+/// Samples about the instant at which a sensor becomes another within which its reading jumps.
+const JUMPS_ABOUT: usize = 4;
 
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
@@ -27,6 +31,8 @@ pub(super) struct ArmDrive<'a> {
     sensing: Sensing,
     /// Sensors before a sample, where they were others.
     before: Option<(usize, Sensing)>,
+    /// Sample at which the reading of the stroke jumps as its sensor becomes another.
+    jumps: Option<usize>,
     /// Samples at which the arm becomes another, so that its oil begins anew.
     anew: [Option<usize>; 2],
     /// Samples at which the play of its valve becomes another, so that its spool is still where it was pulled.
@@ -52,6 +58,7 @@ impl<'a> ArmDrive<'a> {
             arm: Arm::new(machine, &smooth),
             sensing: Sensing::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
             before: None,
+            jumps: None,
             anew: [None; 2],
             plays: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
@@ -72,8 +79,13 @@ impl<'a> ArmDrive<'a> {
         let [was, is] =
             [schedule.before, schedule.effects].map(|effects| effects.wheels[self.wheel]);
         // Before a base whose sensors jumped one does not look, but what the oil holds is from there.
-        let before =
+        let mut before =
             if since > from && was == is { (since, sound.wheels[self.wheel]) } else { (from, was) };
+        let reads = |sensors: &WheelEffects| (sensors.stroke_bias, sensors.stroke_scale);
+        if before.0 > 0 && reads(&before.1) != reads(&is) {
+            before.0 = self.jump_about(before.0);
+            self.jumps = Some(before.0);
+        }
         self.before =
             (before.0 > 0).then(|| (before.0, Sensing::new(self.area_bore_m2, &before.1)));
         let becomes =
@@ -91,6 +103,16 @@ impl<'a> ArmDrive<'a> {
             plays(from, [schedule.before, schedule.effects]),
         ];
         self
+    }
+
+    /// The sample about `i` at which the reading of the stroke jumps: where it goes furthest at once. A log's clock
+    /// begins with its first frame, and is some samples off the one by which a cause begins.
+    fn jump_about(&self, i: usize) -> usize {
+        let stroke_m = &self.signals.stroke_m[self.wheel];
+        let goes_m = |at: &usize| (stroke_m[*at] - stroke_m[*at - 1]).abs();
+        let last = stroke_m.len().saturating_sub(1);
+        let near = i.saturating_sub(JUMPS_ABOUT).max(1)..=(i + JUMPS_ABOUT).min(last);
+        near.max_by(|a, b| goes_m(a).total_cmp(&goes_m(b))).unwrap_or(i)
     }
 
     /// The sensors at sample `i`.
@@ -190,9 +212,14 @@ impl<'a> ArmDrive<'a> {
     fn input(&self, i: usize) -> ArmInput {
         let stroke = &self.signals.stroke_m[self.wheel];
         let truth = |i: usize| self.sensing(i).stroke_m(stroke[i]);
-        let (now_m, before_m) = (truth(i), truth(i.saturating_sub(1)));
-        // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
-        let stroke_rate_m_s = (now_m - before_m) / DT_S;
+        let now_m = truth(i);
+        // Over one sample: what the damper makes of it is smoothed by the filter of the pressures. A jump of the
+        // reading that two samples share is no motion.
+        let last = match self.jumps {
+            Some(jump) if (jump..jump + 2).contains(&i) => jump.saturating_sub(1),
+            _ => i,
+        };
+        let stroke_rate_m_s = (truth(last) - truth(last.saturating_sub(1))) / DT_S;
         ArmInput {
             command: self.signals.opening[self.wheel][i],
             load_n: self.sensing(i).gauge.load_n(self.loads.oil_n[i], self.loads.rod_oil_n[i]),
@@ -290,6 +317,26 @@ mod tests {
         let (errors_m, _) = drive.stroke_errors_m(&[], None);
         let largest_m = errors_m[1000..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
         assert!(largest_m < 3.0e-4, "{largest_m}");
+    }
+
+    /// A clock that is two samples off, and a reading that takes a sample to jump.
+    #[test]
+    fn a_stroke_that_jumps_is_no_jump_of_the_arm() {
+        let (machine, w) = (Machine::xt28(), Wheel::Fl);
+        let (mut off, sound) = (Effects::default(), Effects::default());
+        off.wheels[w].stroke_bias.bias_m = -0.012;
+        let mut s = swinging();
+        let jumped = |i: usize| [0.0, 0.4, 1.0][(i + 1).saturating_sub(500).min(2)];
+        for (i, stroke_m) in s.stroke_m[w].iter_mut().enumerate() {
+            *stroke_m -= 0.012 * jumped(i);
+        }
+        for from_s in [4.98, 5.0, 5.02] {
+            let late = EffectSchedule { before: &sound, from_s, effects: &off, since_s: 0.0 };
+            let drive = ArmDrive::new(&s, &machine, &off, w).over(late);
+            let (errors_m, _) = drive.stroke_errors_m(&[], None);
+            let largest_m = errors_m[100..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+            assert!(largest_m < 1.0e-3, "{from_s}: {largest_m}");
+        }
     }
 
     #[test]

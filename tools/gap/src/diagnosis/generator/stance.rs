@@ -3,17 +3,19 @@
 
 mod carried;
 mod filter;
+mod followed;
 mod holds;
 mod instants;
 mod layout;
 mod lean;
 mod motion;
+mod mount;
 mod plane;
 mod strained;
 mod sway;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::{Effects, Parts};
+use xt28_sim::Parts;
 
 use super::grade::Grade;
 use crate::diagnosis::belief::EffectSchedule;
@@ -25,6 +27,7 @@ pub(super) use holds::{Held, Holds};
 use instants::{PRESSURE_FILTER_S, STANDING};
 use layout::{Layout, Reach};
 pub(super) use lean::antenna_leans_m;
+use mount::Mount;
 use plane::{Foot, Plane};
 
 /// Standing errors over a run, ten a second; `NaN` where nothing can be said. Attitude and weight are
@@ -103,49 +106,18 @@ pub(super) fn read_at_s(signal: Signal, at_s: f64) -> f64 {
     }
 }
 
-/// Stance over a run. Of sensors that were others until late in it, what is before is as if they had always been so.
+/// Stance over a run. Sensors that were others until late in it are so here too, as what sways is told beside what was
+/// before; of all else, what is before is as if it had always been so.
 #[must_use]
 pub(super) fn stance_errors(
     s: &Signals,
     machine: &Machine,
     schedule: EffectSchedule<'_>,
 ) -> StanceErrors {
-    let effects = schedule.effects;
-    let parts = Parts::new(machine, effects);
-    let mut carriers = INNER_SHARES.map(|inner_share| {
-        PerWheel::from_fn(|w| Carrier::new(s, machine, schedule, &parts, w, inner_share))
-    });
     let instants = s.instants(|| instants::instants(s, machine));
-    let ground = Grade::believed(s, effects);
-    let carried = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>, instant: &Instant| {
-        let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
-            return UNKNOWN;
-        };
-        let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
-        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
-        judge(instant, &arms, &parts, (machine, effects), ground).unwrap_or(UNKNOWN)
-    };
-    strain(&mut carriers, |carriers| {
-        let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
-        first.map(|instant| carried(carriers, None, instant)).collect()
-    });
-    let carried_by = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>| -> Vec<Error> {
-        instants.iter().map(|instant| carried(carriers, holds, instant)).collect()
-    };
-    let rolls_hard = effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0);
-    let inner_shares = if rolls_hard { &carriers[..] } else { &carriers[..1] };
-    let held_by = |holds: Option<&Holds>| {
-        let each = inner_shares.iter().map(|carriers| carried_by(carriers, holds));
-        each.min_by(|a, b| left(a).total_cmp(&left(b))).unwrap_or_default()
-    };
-    // No log says how its tyres creep. What the holds of its motors leave does.
-    let held = Held::new(s, machine, effects, &parts, PRESSURE_FILTER_S);
-    let errors = held
-        .iter()
-        .flat_map(|held| CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n)))
-        .map(|holds| held_by(Some(&holds)))
-        .min_by(|a, b| left(a).total_cmp(&left(b)))
-        .unwrap_or_else(|| held_by(None));
+    let each =
+        Mount::each(schedule).into_iter().map(|m| errors(s, machine, schedule, &m, instants));
+    let errors = each.min_by(|a, b| tilted(a).total_cmp(&tilted(b))).unwrap_or_default();
     let of = |value: &dyn Fn(&Error) -> f64| {
         let standing: Samples = errors.iter().step_by(STANDING).map(value).collect();
         instants::held_between(&standing, STANDING, s.len)
@@ -165,6 +137,51 @@ pub(super) fn stance_errors(
         roll_sway_rad,
         pitch_sway_rad,
     }
+}
+
+/// Errors of every instant, with the inertial unit on its `mount`.
+fn errors(
+    s: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+    mount: &Mount,
+    instants: &[Instant],
+) -> Vec<Error> {
+    let effects = schedule.effects;
+    let parts = Parts::new(machine, effects);
+    let mut carriers = INNER_SHARES.map(|inner_share| {
+        PerWheel::from_fn(|w| Carrier::new(s, machine, schedule, &parts, w, inner_share))
+    });
+    let ground = Grade::believed(s, effects);
+    let carried = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>, instant: &Instant| {
+        let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
+            return UNKNOWN;
+        };
+        let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
+        let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
+        let mount_rad = mount.at_rad(instant.sample);
+        judge(instant, &arms, &parts, (machine, mount_rad), ground).unwrap_or(UNKNOWN)
+    };
+    strain(&mut carriers, |carriers| {
+        let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
+        first.map(|instant| carried(carriers, None, instant)).collect()
+    });
+    let carried_by = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>| -> Vec<Error> {
+        instants.iter().map(|instant| carried(carriers, holds, instant)).collect()
+    };
+    let rolls_hard = effects.wheels.iter().any(|(_, e)| e.rolling_resistance.added != 0.0);
+    let inner_shares = if rolls_hard { &carriers[..] } else { &carriers[..1] };
+    let held_by = |holds: Option<&Holds>| {
+        let each = inner_shares.iter().map(|carriers| carried_by(carriers, holds));
+        each.min_by(|a, b| left(a).total_cmp(&left(b))).unwrap_or_default()
+    };
+    // No log says how its tyres creep. What the holds of its motors leave does.
+    let held = Held::new(s, machine, effects, &parts, PRESSURE_FILTER_S);
+    held.iter()
+        .flat_map(|held| CREEPS_M_S_N.map(|creep_m_s_n| held.on(creep_m_s_n)))
+        .map(|holds| held_by(Some(&holds)))
+        .min_by(|a, b| left(a).total_cmp(&left(b)))
+        .unwrap_or_else(|| held_by(None))
 }
 
 /// Has the seals hold as the log begins what leaves least then of the weight and its place; `judge` says the errors
@@ -190,12 +207,13 @@ fn strain<'a>(
     carriers.iter_mut().for_each(|carriers| hold(carriers, &begins_n));
 }
 
-/// One instant, with where each wheel is and what it presses on the ground.
+/// One instant, with where each wheel is and what it presses on the ground, and the roll and pitch by which the
+/// inertial unit's attitude is off.
 fn judge(
     instant: &Instant,
     arms: &PerWheel<(Reach, f64)>,
     parts: &Parts,
-    (machine, effects): (&Machine, &Effects),
+    (machine, [off_roll_rad, off_pitch_rad]): (&Machine, [f64; 2]),
     ground: Grade,
 ) -> Option<Error> {
     let reaches = PerWheel::from_fn(|w| arms[w].0);
@@ -207,12 +225,11 @@ fn judge(
     });
     let plane = Plane::through(&feet)?;
     let contact_m = PerWheel::from_fn(|w| plane.error_m(&feet[w]));
-    let imu = &effects.sensors.imu_offset;
     // What the unit feels of a turn, leaning as it is mounted on a frame that leans: right side high is a turn
     // against the ahead axis, nose up one against the left.
-    let [about_ahead, about_left] = [plane.slope_x - imu.pitch_rad, plane.slope_y + imu.roll_rad];
-    let roll = instant.attitude_rad[0] - imu.roll_rad - instant.turned_rad[0] * about_ahead;
-    let pitch = instant.attitude_rad[1] - imu.pitch_rad - instant.turned_rad[1] * about_left;
+    let [about_ahead, about_left] = [plane.slope_x - off_pitch_rad, plane.slope_y + off_roll_rad];
+    let roll = instant.attitude_rad[0] - off_roll_rad - instant.turned_rad[0] * about_ahead;
+    let pitch = instant.attitude_rad[1] - off_pitch_rad - instant.turned_rad[1] * about_left;
     let [nose_rad, left_rad] = ground.attitude_rad(instant.heading);
     let lean_rad = [plane.slope_y - left_rad - roll, nose_rad - plane.slope_x - pitch];
     if !instant.is_calm {
@@ -248,6 +265,12 @@ fn left(errors: &[Error]) -> f64 {
             + square(error.attitude_rad[1], Signal::Pitch)
     };
     errors.iter().step_by(STANDING).map(of).sum()
+}
+
+/// Squares of what is left of the attitude.
+fn tilted(errors: &[Error]) -> f64 {
+    let lean_rad = errors.iter().flat_map(|error| error.lean_rad).filter(|lean| lean.is_finite());
+    lean_rad.map(|lean| lean * lean).sum()
 }
 
 /// Weight less what the wheels carry, N, and where it should act less where they say, m.

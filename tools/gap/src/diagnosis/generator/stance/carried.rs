@@ -1,8 +1,10 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
 use xt28_machine::{Machine, Wheel};
+use xt28_sim::effects::SealStiction;
 use xt28_sim::{Effects, Parts};
 
+use super::followed::Followed;
 use super::instants::PRESSURE_FILTER_S;
 use super::layout::Reach;
 use super::motion::{lagged, unflickered};
@@ -20,9 +22,7 @@ pub(super) struct Carrier<'a> {
     parts: &'a Parts,
     effects: &'a Effects,
     /// Its sensors.
-    sensing: Sensing,
-    /// What they were until an instant, s, from which on the filter follows.
-    before: [Option<(f64, Sensing)>; 2],
+    sensing: Followed<Sensing>,
     /// Weight of wheel and arm that the pivot does not carry, N.
     own_n: f64,
     /// Rolling resistance per load, m.
@@ -48,35 +48,25 @@ impl<'a> Carrier<'a> {
         let effects = schedule.effects;
         let of =
             |effects: &Effects| Sensing::new(machine.arms.area_bore_m2, &effects.wheels[wheel]);
-        let was = |at_s: f64, [was, is]: [&Effects; 2]| {
-            (at_s > 0.0 && was.wheels[wheel] != is.wheels[wheel]).then(|| (at_s, of(was)))
-        };
+        let differs = |was: &Effects, is: &Effects| was.wheels[wheel] != is.wheels[wheel];
         let added = effects.wheels[wheel].rolling_resistance.added;
         Self {
             wheel,
             parts,
             effects,
-            sensing: of(effects),
-            before: [
-                was(schedule.since_s, [&Effects::default(), schedule.before]),
-                was(schedule.from_s, [schedule.before, effects]),
-            ],
+            sensing: Followed::new(schedule, of, differs),
             own_n: own_n(machine, parts, wheel),
             resistance_m: (machine.wheels.rolling_resistance + added).max(0.0)
                 * machine.wheels.radius_m,
             inner_share,
             friction: machine.wheels.friction,
-            seal: seal(s, effects, wheel),
+            seal: seal(s, schedule, wheel),
         }
     }
 
     /// The sensors as the filtered readings of a sample show them.
     fn sensing_at(&self, sample: usize) -> Sensing {
-        let at_s = sample as f64 * DT_S;
-        let jumped = self.before.iter().flatten().filter(|(from_s, _)| at_s >= *from_s);
-        jumped.fold(self.sensing, |sensing, (from_s, before)| {
-            sensing.toward(before, (-(at_s - from_s) / PRESSURE_FILTER_S).exp())
-        })
+        self.sensing.at(sample, |time_s| (-time_s / PRESSURE_FILTER_S).exp())
     }
 
     /// Where the wheel is, and what it presses on the ground, N; its idle motor holds it by
@@ -147,25 +137,33 @@ impl Moments {
     }
 }
 
-/// The seals on the measured motion.
-fn seal(s: &Signals, effects: &Effects, wheel: Wheel) -> Seal {
-    let law = &effects.arms[wheel].stiction;
+/// The seals on the measured motion, each law from when it holds. What one has in common with the law before it
+/// carries on; seals that begin to stick hold nothing until the rod moves.
+fn seal(s: &Signals, schedule: EffectSchedule<'_>, wheel: Wheel) -> Seal {
+    let EffectSchedule { before, from_s, effects, since_s } = schedule;
+    let law = effects.arms[wheel].stiction;
     let most_n = law.coulomb_n + law.stribeck_n;
     if most_n == 0.0 {
         return Seal::default();
     }
+    let law_at = |sample: usize| match sample as f64 * DT_S {
+        at_s if at_s < since_s => SealStiction::default(),
+        at_s if at_s < from_s => before.arms[wheel].stiction,
+        _ => law,
+    };
     let scale = effects.wheels[wheel].stroke_scale.factor;
     let (mut friction_n, mut left) = (0.0, 1.0);
     let mut last_m = None;
-    let step = |stroke_m: f64| {
+    let step = |(sample, stroke_m): (usize, f64)| {
         let travel_m = stroke_m - last_m.replace(stroke_m).unwrap_or(stroke_m);
         let rate_m_s = travel_m / DT_S / scale;
+        let law = law_at(sample);
         friction_n = law.step(friction_n, rate_m_s, DT_S);
         // What it is where they were strained less what it is where they were not, as a share.
         left *= law.ahead(1.0, rate_m_s, DT_S)[0];
         (friction_n, left)
     };
-    let both = unflickered(&s.smooth_stroke_m[wheel]).into_iter().map(step);
+    let both = unflickered(&s.smooth_stroke_m[wheel]).into_iter().enumerate().map(step);
     let (friction_n, left): (Samples, Samples) = both.unzip();
     let late = |samples: Samples| lagged(samples.into_iter(), PRESSURE_FILTER_S);
     Seal { friction_n: late(friction_n), left: late(left), most_n, begins_n: 0.0 }
@@ -211,11 +209,25 @@ mod tests {
         for (i, stroke_m) in s.smooth_stroke_m[Wheel::Bl].iter_mut().enumerate() {
             *stroke_m = 0.2 + 2.0e-5 * i.saturating_sub(500) as f64;
         }
-        let seal = seal(&s, &effects, Wheel::Bl);
+        let seal = seal(&s, (&effects).into(), Wheel::Bl);
         assert_eq!((seal.left[400], seal.friction_n[400], seal.most_n), (1.0, 0.0, 8.0e3));
         assert!(seal.left[999] < 1e-3 && seal.friction_n[999] > 7.9e3);
         let strained = Seal { begins_n: -5.0e3, ..seal };
         assert_eq!(strained.at_n(400), -5.0e3);
         assert!(strained.at_n(999) > 7.9e3);
+    }
+
+    #[test]
+    fn seals_that_begin_to_stick_hold_nothing_until_the_rod_moves() {
+        let (mut s, mut effects, sound) = (still(10), Effects::default(), Effects::default());
+        effects.arms[Wheel::Bl].stiction.coulomb_n = 8.0e3;
+        for (i, stroke_m) in s.smooth_stroke_m[Wheel::Bl].iter_mut().enumerate() {
+            *stroke_m = 0.2 + 2.0e-5 * (i.min(300) + i.saturating_sub(700)) as f64;
+        }
+        let late = EffectSchedule { before: &sound, from_s: 5.0, effects: &effects, since_s: 0.0 };
+        let seal = [seal(&s, late, Wheel::Bl), seal(&s, (&effects).into(), Wheel::Bl)];
+        assert_eq!((seal[0].at_n(600), seal[0].left[600]), (0.0, 0.0));
+        assert!(seal[1].at_n(600) > 7.0e3, "those that always did are strained");
+        assert!(seal.iter().all(|seal| seal.at_n(999) > 7.9e3));
     }
 }

@@ -12,7 +12,7 @@ use super::motion::Motion;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, median};
 
 /// Share of the turned angle that the filter keeps a tick: 2 s for roll, 1 s for pitch (facts 5).
-const KEEP: [f64; 2] = [0.995, 0.99];
+pub(super) const KEEP: [f64; 2] = [0.995, 0.99];
 /// Unit in which the firmware's filter keeps angles, rad.
 const UNIT_RAD: f64 = 1.0e-3 * core::f64::consts::PI / 180.0;
 /// The filter that cuts off is taken where it leaves less than this share of what the other leaves: both

@@ -1,0 +1,104 @@
+//! What filtered readings show of something that jumps within a run.
+
+use xt28_sim::Effects;
+
+use crate::diagnosis::belief::EffectSchedule;
+use crate::diagnosis::gauge::Sensing;
+use crate::diagnosis::signals::DT_S;
+
+/// Something that may change bit by bit.
+pub(super) trait Blend: Copy {
+    /// The same with `share` of it changed for `other`.
+    fn toward(self, other: &Self, share: f64) -> Self;
+}
+
+impl Blend for f64 {
+    fn toward(self, other: &Self, share: f64) -> Self {
+        self + share * (other - self)
+    }
+}
+
+impl Blend for Sensing {
+    fn toward(self, other: &Self, share: f64) -> Self {
+        Self::toward(self, other, share)
+    }
+}
+
+/// Something believed, and what it was until instants of a run.
+#[derive(Clone, Copy)]
+pub(super) struct Followed<T> {
+    /// What it is at first.
+    first: T,
+    /// When it becomes something else, s, and what.
+    then: [Option<(f64, T)>; 2],
+}
+
+impl<T: Blend> Followed<T> {
+    /// What `of` makes of the effects of a `schedule`; it jumps where `differs` says so of two of them.
+    pub(super) fn new(
+        schedule: EffectSchedule<'_>,
+        of: impl Fn(&Effects) -> T,
+        differs: impl Fn(&Effects, &Effects) -> bool,
+    ) -> Self {
+        let EffectSchedule { before, from_s, effects, since_s } = schedule;
+        let becomes = |at_s: f64, was: &Effects, is: &Effects| {
+            (at_s > 0.0 && differs(was, is)).then(|| (at_s, of(is)))
+        };
+        let then =
+            [becomes(since_s, &Effects::default(), before), becomes(from_s, before, effects)];
+        let first = match then {
+            [Some(_), _] => of(&Effects::default()),
+            [None, Some(_)] => of(before),
+            [None, None] => of(effects),
+        };
+        Self { first, then }
+    }
+
+    /// Whether it jumps at all.
+    pub(super) fn jumps(&self) -> bool {
+        self.then.iter().any(Option::is_some)
+    }
+
+    /// As a reading of `sample` shows it, whose filters leave `remains` of a jump so many seconds later.
+    pub(super) fn at(&self, sample: usize, remains: impl Fn(f64) -> f64) -> T {
+        let at_s = sample as f64 * DT_S;
+        let jumped = self.then.iter().flatten().filter(|(from_s, _)| at_s >= *from_s);
+        jumped.fold(self.first, |was, (from_s, is)| is.toward(&was, remains(at_s - from_s)))
+    }
+}
+
+/// Share of a jump that two first-order filters one after the other, of these time constants, s, have yet to show
+/// after `time_s`; the constants differ.
+pub(super) fn remains_behind([slow_s, quick_s]: [f64; 2], time_s: f64) -> f64 {
+    let left = |constant_s: f64| constant_s * (-time_s / constant_s).exp();
+    (left(slow_s) - left(quick_s)) / (slow_s - quick_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::generator::stance::motion::lagged;
+
+    #[test]
+    fn what_remains_is_what_two_filters_have_yet_to_show() {
+        let jump = (0..1000).map(|i| if i < 100 { 0.0 } else { 1.0 });
+        let twice = lagged(lagged(jump, 2.0).into_iter(), 0.164);
+        for i in [100, 120, 200, 500, 999] {
+            let remains = remains_behind([2.0, 0.164], (i - 100) as f64 * DT_S);
+            assert!((1.0 - twice[i] - remains).abs() < 0.01, "{i}: {} {remains}", twice[i]);
+        }
+    }
+
+    #[test]
+    fn a_jump_shows_by_and_by() {
+        let mut off = Effects::default();
+        off.sensors.imu_offset.roll_rad = 0.02;
+        let sound = Effects::default();
+        let schedule = EffectSchedule { before: &sound, from_s: 3.0, effects: &off, since_s: 0.0 };
+        let of = |effects: &Effects| effects.sensors.imu_offset.roll_rad;
+        let roll = Followed::new(schedule, of, |was, is| of(was) != of(is));
+        let at = |sample| roll.at(sample, |time_s| (-time_s / 2.0).exp());
+        assert_eq!((at(299), at(300)), (0.0, 0.0));
+        assert!((at(500) - 0.02 * (1.0 - (-1.0_f64).exp())).abs() < 1e-12);
+    }
+}

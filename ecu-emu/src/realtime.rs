@@ -29,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     let config = config(args)?;
     let mut bus = SocketCan::open(&args.bus)?;
     let mut wires = WireBuses::open(&args.wires)?;
-    let serial = Serial::open(args.gnss_link.as_deref())
+    let mut serial = Serial::open(args.gnss_link.as_deref())
         .map_err(|error| format!("cannot open a pseudo-terminal for the receiver: {error}"))?;
     let mut truth = args.truth.as_deref().map(open_truth).transpose()?;
     let stop = Arc::new(AtomicBool::new(false));

@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
 
 mod args;
+mod listening;
 mod realtime;
 mod schedule;
 mod serial;

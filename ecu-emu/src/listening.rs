@@ -1,23 +1,18 @@
-//! Hearing a bus until a tick is due: what is fresh, how much at a time, and whether somebody doubles the machine.
+//! Hearing a bus until a tick is due: what of it is fresh, and how much at a time.
 
 use core::time::Duration;
 use std::time::Instant;
 
 use ecu_emu::Emulator;
 use xt28_bus::{Bus, SocketCan};
-use xt28_dbc::messages::{PosFront, WheelSpeedJoint};
-use xt28_dbc::{CanId, Frame};
 use xt28_machine::SimTime;
 
 use crate::schedule::Schedule;
+use crate::watch::Watch;
 
 /// Frames taken off a bus before the clock is looked at again: more than its socket holds, so that what waited
 /// through a halt is gone with one look, and so few that no flood keeps a tick from coming.
 pub(crate) const AT_ONCE: usize = 4096;
-
-/// Sent every tick by either profile's arm ECU and drive ECU, and by nobody else.
-const ONLY_OURS: [(CanId, &str); 2] =
-    [(PosFront::ID, "PosFront"), (WheelSpeedJoint::ID, "WheelSpeedJoint")];
 
 /// A bus that can be waited for.
 pub(crate) trait Waited: Bus {
@@ -50,12 +45,12 @@ pub(crate) fn until_due<B: Waited>(
     emulator: &mut Emulator,
     now: SimTime,
     schedule: &Schedule,
-    doubled: &mut Doubled,
+    watch: &mut Watch,
 ) -> Result<(), B::Error> {
     loop {
         for _ in 0..AT_ONCE {
             let Some(received) = bus.receive()? else { break };
-            doubled.note(&received.frame);
+            watch.note(&received.frame);
             let at = Instant::now();
             if !schedule.is_stale(now, at) {
                 emulator.on_frame(schedule.time(at).min(now), &received.frame);
@@ -69,42 +64,20 @@ pub(crate) fn until_due<B: Waited>(
     }
 }
 
-/// Whether somebody else sends what only this machine's ECUs do: another emulator, a log that is played back,
-/// or the machine. Whoever listens then follows two machines at once.
-#[derive(Debug, Default)]
-pub(crate) struct Doubled {
-    told: bool,
-    news: Option<&'static str>,
-}
-
-impl Doubled {
-    fn note(&mut self, frame: &Frame) {
-        let ours = ONLY_OURS.iter().find(|(id, _)| *id == frame.id());
-        if let Some((_, name)) = ours.filter(|_| !self.told) {
-            (self.told, self.news) = (true, Some(*name));
-        }
-    }
-
-    /// The name of the first such frame, once.
-    pub(crate) const fn take(&mut self) -> Option<&'static str> {
-        self.news.take()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use core::convert::Infallible;
 
     use ecu_emu::EmulatorConfig;
     use xt28_bus::{BusState, Received};
+    use xt28_dbc::{CanId, Frame};
     use xt28_machine::Machine;
     use xt28_sim::Terrain;
 
     use super::*;
 
-    /// A bus on which somebody never stops to send `id`, or does after so many frames.
+    /// A bus on which somebody never stops to send, or does after so many frames.
     struct Flood {
-        id: CanId,
         left: usize,
     }
 
@@ -118,7 +91,7 @@ mod tests {
         fn receive(&mut self) -> Result<Option<Received>, Infallible> {
             let Some(left) = self.left.checked_sub(1) else { return Ok(None) };
             self.left = left;
-            let frame = Frame::new(self.id, &[0; 8]).unwrap();
+            let frame = Frame::new(CanId::Standard(0x7FF), &[0; 8]).unwrap();
             Ok(Some(Received { at: SimTime::ZERO, frame }))
         }
 
@@ -133,32 +106,24 @@ mod tests {
         }
     }
 
-    fn heard(bus: &mut Flood) -> Doubled {
+    fn hear(bus: &mut Flood) {
         let config = EmulatorConfig::new(Machine::xt28(), Terrain::Flat, None);
-        let (mut emulator, mut doubled) = (Emulator::set_down(&config), Doubled::default());
+        let (mut emulator, mut watch) = (Emulator::set_down(&config), Watch::default());
         let schedule = Schedule::new(Instant::now());
-        until_due(bus, &mut emulator, SimTime::from_millis(10), &schedule, &mut doubled).unwrap();
-        doubled
+        until_due(bus, &mut emulator, SimTime::from_millis(10), &schedule, &mut watch).unwrap();
     }
 
     #[test]
     fn no_flood_keeps_a_tick_from_coming() {
-        let mut flood = Flood { id: CanId::Standard(0x7FF), left: usize::MAX };
-        heard(&mut flood);
+        let mut flood = Flood { left: usize::MAX };
+        hear(&mut flood);
         discard(&mut flood).unwrap();
     }
 
     #[test]
     fn all_that_a_socket_holds_is_gone_at_once() {
-        let mut some = Flood { id: CanId::Standard(0x7FF), left: AT_ONCE };
+        let mut some = Flood { left: AT_ONCE };
         discard(&mut some).unwrap();
         assert_eq!(some.left, 0);
-    }
-
-    #[test]
-    fn a_double_of_the_machine_is_told_once() {
-        let mut doubled = heard(&mut Flood { id: CanId::Extended(0x18FE_1026), left: 2 });
-        assert_eq!([doubled.take(), doubled.take()], [Some("PosFront"), None]);
-        assert_eq!(heard(&mut Flood { id: CanId::Standard(0x1026 & 0x7FF), left: 2 }).take(), None);
     }
 }

@@ -11,16 +11,18 @@ use ecu_emu::{
     Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, UnheardEffect, Wire,
     write_truth_row,
 };
-use xt28_bus::{Bus, SocketCan};
+use xt28_bus::{Bus, BusState, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
-use crate::listening::{self, Doubled};
+use crate::listening;
 use crate::schedule::Schedule;
 use crate::serial::Serial;
+use crate::tell;
+use crate::watch::Watch;
 use crate::wire_buses::WireBuses;
 
 type Problem = Box<dyn std::error::Error>;
@@ -44,19 +46,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     // What came while the machine settled is of nobody knows when.
     listening::discard(&mut bus)?;
     wires.discard()?;
-    let (mut schedule, mut doubled) = (Schedule::new(Instant::now()), Doubled::default());
+    let (mut schedule, mut watch) = (Schedule::new(Instant::now()), Watch::default());
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
     let over = |wall: SimTime| last.is_some_and(|last| wall.since(SimTime::ZERO) >= last);
     while !stop.load(Ordering::Relaxed) && !over(schedule.on_the_wall(now)) {
-        listening::until_due(&mut bus, &mut emulator, now, &schedule, &mut doubled)?;
-        if let Some(frame) = doubled.take() {
-            eprintln!(
-                "ecu-emu: somebody else on {} sends {frame}, which only this machine's ECUs do: stop the other \
-                 emulator, or the playing of the log",
-                args.bus
-            );
-        }
+        listening::until_due(&mut bus, &mut emulator, now, &schedule, &mut watch)?;
+        let off = [bus.take_bus_off(), bus.state() == BusState::BusOff];
+        watch.news(&args.bus, off).into_iter().flatten().for_each(tell);
         let at = Instant::now();
         if schedule.is_stale(now, at) {
             wires.discard()?;
@@ -76,16 +73,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         bytes.clear();
         emulator.take_gnss(&mut bytes);
         if !bytes.is_empty() {
-            serial.send(&bytes)?;
+            serial.send(&bytes).map_err(|error| format!("{}: {error}", serial.path().display()))?;
         }
         now += TICK;
     }
     if let Some((file, path)) = &mut truth {
         file.flush().map_err(|error| format!("{}: {error}", path.display()))?;
     }
-    eprintln!("ecu-emu: {schedule}");
+    tell(schedule);
     if let frames @ 1.. = u64::from(bus.receive_drops().unwrap_or(0)) + wires.receive_drops() {
-        eprintln!("ecu-emu: {frames} frames came and were lost: nobody read them in time");
+        tell(format_args!("{frames} frames came and were lost: nobody read them in time"));
     }
     Ok(())
 }

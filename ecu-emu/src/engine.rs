@@ -1,5 +1,7 @@
 //! The diesel engine's own controller: follows the requested speed, says what J1939 has it say.
 
+use core::ops::Range;
+
 use xt28_dbc::Frame;
 use xt28_dbc::messages::{Eec1, Eec2, Et1};
 use xt28_machine::SimTime;
@@ -17,6 +19,8 @@ const EFFICIENCY: f64 = 0.7;
 const COOLANT_DEG_C: f64 = 85.0;
 /// A slower engine is not loaded but stalling, rad/s (assumed).
 const SPEED_MIN_RAD_S: f64 = 10.0;
+/// What J1939 says where there is nothing to be said.
+const NOT_AVAILABLE: u8 = 0xFF;
 const RAD_S_PER_RPM: f64 = core::f64::consts::TAU / 60.0;
 
 /// The engine.
@@ -96,16 +100,44 @@ impl EngineSpeaker {
         let engine_rad_s = (state.engine_speed_rpm * RAD_S_PER_RPM).max(SPEED_MIN_RAD_S);
         let torque_nm = power_w.max(0.0) / EFFICIENCY / engine_rad_s;
         let load_percent = (100.0 * (LOAD_IDLE + torque_nm / self.torque_max_nm)).clamp(0.0, 125.0);
-        Eec2 { load_percent }.encode().expect("a clamped load is in the frame's range")
+        let frame = Eec2 { load_percent }.encode().expect("a clamped load is in the frame's range");
+        saying_only(2..3, frame)
     }
 }
 
 fn et1() -> Frame {
-    Et1 { coolant_deg_c: COOLANT_DEG_C }.encode().expect("a temperature in the frame's range")
+    let frame = Et1 { coolant_deg_c: COOLANT_DEG_C }.encode();
+    saying_only(0..1, frame.expect("a temperature in the frame's range"))
 }
 
 /// The engine's frame at a speed; a speed that the frame cannot say is said as its nearest.
 fn eec1(speed_rpm: f64) -> Frame {
     let engine_speed_rpm = speed_rpm.clamp(0.0, SPEED_RANGE_RPM[1]);
-    Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range")
+    let frame =
+        Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range");
+    saying_only(3..5, frame)
+}
+
+/// The frame with all but those bytes "not available" (SAE J1939-71, 5.1.4; the recorded machine's too). Zeros
+/// there are a torque of -125 % and oil at -273 degC to whoever reads them.
+fn saying_only(bytes: Range<usize>, mut frame: Frame) -> Frame {
+    let others = frame.data_mut().iter_mut().enumerate().filter(|(i, _)| !bytes.contains(i));
+    others.for_each(|(_, byte)| *byte = NOT_AVAILABLE);
+    frame
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_engine_does_not_say_is_not_available() {
+        let state = VehicleState { engine_speed_rpm: 1200.0, ..VehicleState::default() };
+        let frames = EngineSpeaker::new(1300.0).frames(SimTime::ZERO, &state);
+        let said = frames.map(|frame| format!("{:?}", frame.expect("all are due at first")));
+        // The first as in the logs of the recorded machine. 10 % of load, 125 - 40 degC.
+        let wanted =
+            ["0CF00400#FFFFFF8025FFFFFF", "0CF00300#FFFF0AFFFFFFFFFF", "18FEEE00#7DFFFFFFFFFFFFFF"];
+        assert_eq!(said, wanted);
+    }
 }

@@ -224,7 +224,7 @@ impl DriveEcu {
         let mut can1 = core::mem::take(&mut out.can1);
         frames::sensors(&readings, self.wheel_counter.next_count(), &mut can1);
         frames::currents(out, &mut can1);
-        frames::machine(&readings, braked, pump, self.engine.speed_rpm(), &mut can1);
+        frames::machine(&readings, braked, pump, &self.engine, &mut can1);
         let status = frames::Status {
             state: self.state,
             faults,

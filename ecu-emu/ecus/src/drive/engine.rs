@@ -1,8 +1,8 @@
-//! The engine: its speed frame in, the speed request out (facts 2.8).
+//! The engine: its speed and coolant in, the speed request out (facts 2.8).
 
 use core::time::Duration;
 
-use xt28_dbc::messages::Eec1;
+use xt28_dbc::messages::{Eec1, Et1};
 use xt28_dbc::{CanId, Frame};
 use xt28_machine::SimTime;
 
@@ -14,28 +14,39 @@ const REQUEST_RPM: [f64; 2] = [800.0, 1800.0];
 const RPM_PER_BIT: f64 = 0.125;
 /// Without a speed frame for this long the engine is lost: its period is 20 ms (assumed).
 const LOST_AFTER: Duration = Duration::from_millis(200);
+/// Coolant before the engine has spoken of it, degC (facts 2.5).
+const COOLANT_UNKNOWN_DEG_C: f64 = -40.0;
+/// Above this J1939 says error or not available, degC (SAE J1939-71: a byte above 250).
+const COOLANT_MAX_DEG_C: f64 = 210.0;
 
 /// What the drive ECU knows of the engine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EngineLink {
     requested_rpm: f64,
     speed_rpm: f64,
+    coolant_deg_c: f64,
     heard_at: Option<SimTime>,
 }
 
 impl EngineLink {
     pub(crate) const fn new(working_rpm: f64) -> Self {
-        Self { requested_rpm: working_rpm, speed_rpm: 0.0, heard_at: None }
+        Self {
+            requested_rpm: working_rpm,
+            speed_rpm: 0.0,
+            coolant_deg_c: COOLANT_UNKNOWN_DEG_C,
+            heard_at: None,
+        }
     }
 
-    /// A frame from the engine; others than its speed are left alone.
+    /// A frame from the engine; others than its speed and its coolant are left alone.
     pub(crate) fn on_frame(&mut self, now: SimTime, frame: &Frame) {
-        if frame.id() != Eec1::ID {
-            return;
-        }
         if let Ok(eec1) = Eec1::decode(frame) {
             self.speed_rpm = eec1.engine_speed_rpm;
             self.heard_at = Some(now);
+        } else if let Ok(et1) = Et1::decode(frame)
+            && et1.coolant_deg_c <= COOLANT_MAX_DEG_C
+        {
+            self.coolant_deg_c = et1.coolant_deg_c;
         }
     }
 
@@ -66,6 +77,11 @@ impl EngineLink {
     /// Engine speed, rpm; 0 before the first frame.
     pub(crate) const fn speed_rpm(&self) -> f64 {
         self.speed_rpm
+    }
+
+    /// Its coolant, degC; -40 before the first frame, and it stays when none comes.
+    pub(crate) const fn coolant_deg_c(&self) -> f64 {
+        self.coolant_deg_c
     }
 
     /// True before the first frame, and when none came for too long.

@@ -280,7 +280,7 @@ impl DriveEcu {
         }
         let driven = throttle != 0.0;
         let target = droop::demand(throttle, self.working_rpm, self.engine.asked_rpm());
-        let share = self.relief.step(self.engine.speed_share(now), driven);
+        let share = self.relief.step(self.engine.step(now), driven);
         let displacement = displacements(self.throttle.step(target) * share);
         let [a_ma, b_ma] = pins::pump_ma(displacement.pump);
         let asked = pins::pump_displacement(a_ma, b_ma);

@@ -19,7 +19,7 @@ use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
 use crate::listening;
-use crate::schedule::Schedule;
+use crate::schedule::{STALE, Schedule};
 use crate::serial::Serial;
 use crate::tell;
 use crate::watch::Watch;
@@ -40,12 +40,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
     let mut emulator = Emulator::new(&config);
-    tell_where(&args.bus, serial.path())
-        .map_err(|error| format!("cannot write to stdout: {error}"))?;
-
-    // What came while the machine settled is of nobody knows when.
+    // What came while the machine settled, or while nobody took the line that says so, is of nobody knows when.
+    // What its reader sends is heard.
     listening::discard(&mut bus)?;
     wires.discard()?;
+    let settled = Instant::now();
+    tell_where(&args.bus, serial.path())
+        .map_err(|error| format!("cannot write to stdout: {error}"))?;
+    if settled.elapsed() > STALE {
+        listening::discard(&mut bus)?;
+        wires.discard()?;
+    }
     let (mut schedule, mut watch) = (Schedule::new(Instant::now()), Watch::default());
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());

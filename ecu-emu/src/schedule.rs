@@ -8,7 +8,7 @@ use xt28_machine::SimTime;
 /// A tick that is later than this is not made up for: as many ticks at once as an ECU goes without a command.
 const PUT_OFF: Duration = Duration::from_millis(30);
 /// What came while a tick was later than this is stale: the gateway has given up on its senders as well.
-const STALE: Duration = Duration::from_millis(100);
+pub(crate) const STALE: Duration = Duration::from_millis(100);
 
 /// The wall time of every tick, and how late they were.
 ///

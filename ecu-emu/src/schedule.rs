@@ -103,6 +103,20 @@ mod tests {
     }
 
     #[test]
+    fn three_ticks_are_the_most_that_is_made_up_for_and_a_tenth_of_a_second_the_most_that_is_heard()
+    {
+        let start = Instant::now();
+        let put_off = [30, 31].map(|ms| {
+            let mut schedule = Schedule::new(start);
+            schedule.begin(AT(0), start + MS(ms));
+            schedule.due(AT(0)) > start
+        });
+        assert_eq!(put_off, [false, true]);
+        let schedule = Schedule::new(start);
+        assert_eq!([100, 101].map(|ms| schedule.is_stale(AT(0), start + MS(ms))), [false, true]);
+    }
+
+    #[test]
     fn a_halt_is_not() {
         let start = Instant::now();
         let mut schedule = Schedule::new(start);

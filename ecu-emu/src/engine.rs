@@ -128,7 +128,38 @@ fn saying_only(bytes: Range<usize>, mut frame: Frame) -> Frame {
 
 #[cfg(test)]
 mod tests {
+    use xt28_dbc::CanId;
+
     use super::*;
+
+    /// The request of 1800 rpm (14400 eighths) from an engine of 1200, its mode byte so.
+    fn asked(id: CanId, mode: u8) -> Engine {
+        let mut engine = Engine::new(1200.0);
+        engine.on_frame(&Frame::new(id, &[mode, 0x40, 0x38, 0, 255, 0, 255, 255]).unwrap());
+        engine
+    }
+
+    #[test]
+    fn a_request_is_followed_within_the_governors_time() {
+        let mut engine = asked(CanId::Extended(1), 1);
+        (0..30).for_each(|_| engine.step(0.01));
+        let wanted_rpm = 1800.0 - 600.0 * (-1.0_f64).exp();
+        assert!((engine.speed_rpm() - wanted_rpm).abs() < 1e-6, "{}", engine.speed_rpm());
+        (0..1000).for_each(|_| engine.step(0.01));
+        assert!((engine.speed_rpm() - 1800.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_no_request_is_left_alone() {
+        for (id, mode) in
+            [(CanId::Extended(2), 1), (CanId::Standard(1), 1), (CanId::Extended(1), 0)]
+        {
+            let mut engine = asked(id, mode);
+            engine.step(10.0);
+            assert_eq!(engine.speed_rpm(), 1200.0, "{id} {mode}");
+        }
+        assert_eq!([Engine::new(100.0), Engine::new(9e9)].map(|e| e.speed_rpm()), SPEED_RANGE_RPM);
+    }
 
     #[test]
     fn what_the_engine_does_not_say_is_not_available() {

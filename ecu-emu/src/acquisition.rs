@@ -92,6 +92,16 @@ mod tests {
         assert!((deviation_mv - expected_mv).abs() < 0.1, "{deviation_mv} {expected_mv}");
     }
 
+    /// Facts 4.8: frequency inputs give tenths of Hz.
+    #[test]
+    fn frequencies_come_in_tenths() {
+        let mut read = pins();
+        read.drive.wheel_hz.0 = [0.0, 0.04, 0.06, 696.34, 696.36, 9_999.96];
+        Acquisition::new(Some(4)).read(&mut read);
+        let tenths = read.drive.wheel_hz.0.map(|hz| (hz * 1e6).round() / 1e6);
+        assert_eq!(tenths, [0.0, 0.0, 0.1, 696.3, 696.4, 10_000.0]);
+    }
+
     #[test]
     fn without_a_seed_the_pins_stay_as_they_are() {
         let mut read = pins();

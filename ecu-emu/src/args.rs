@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     pub(crate) operator: Option<PathBuf>,
 
-    /// Put another of the machine's wires on an interface of its own, both ways: `inertial`,
+    /// Put another of the machine's wires on an interface, not that of `--bus`, both ways: `inertial`,
     /// `left-armrest`, `right-armrest`, `engine` or `display`. Where an armrest's is named and no
     /// operator, the armrests are somebody else's
     #[arg(long = "wire", value_name = "WIRE=INTERFACE", value_parser = wire)]

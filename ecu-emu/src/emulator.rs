@@ -19,7 +19,7 @@ use crate::ecus::{Ecus, Outputs, Pins};
 use crate::engine::{Engine, EngineSpeaker};
 use crate::inbox::Inbox;
 use crate::mishaps::Mishaps;
-use crate::power::{EcuName, Supplies};
+use crate::power::Supplies;
 use crate::receiver::Receiver;
 use crate::sensor_faults::SensorFaults;
 use crate::wires::{Wire, Wires};
@@ -228,8 +228,7 @@ impl Emulator {
         };
         self.sensor_faults.apply(now, &mut pins);
         self.acquisition.read(&mut pins);
-        pins.arm.supply_mv = self.supplies.voltage_mv(now, EcuName::Sms);
-        pins.drive.supply_mv = self.supplies.voltage_mv(now, EcuName::Dms);
+        [pins.arm.supply_mv, pins.drive.supply_mv] = self.supplies.voltages_mv(now);
         self.ecus.reset(now, self.supplies.take_resets(now));
         self.ecus.tick(now, &pins, &mut self.out);
         self.out.spread(&mut self.wires);

@@ -1,5 +1,7 @@
 //! The diesel engine's own controller: follows the requested speed, says what J1939 has it say.
 
+use core::ops::Range;
+
 use xt28_dbc::Frame;
 use xt28_dbc::messages::{Eec1, Eec2, Et1};
 use xt28_machine::SimTime;
@@ -17,6 +19,8 @@ const EFFICIENCY: f64 = 0.7;
 const COOLANT_DEG_C: f64 = 85.0;
 /// A slower engine is not loaded but stalling, rad/s (assumed).
 const SPEED_MIN_RAD_S: f64 = 10.0;
+/// What J1939 says where there is nothing to be said.
+const NOT_AVAILABLE: u8 = 0xFF;
 const RAD_S_PER_RPM: f64 = core::f64::consts::TAU / 60.0;
 
 /// The engine.
@@ -96,16 +100,75 @@ impl EngineSpeaker {
         let engine_rad_s = (state.engine_speed_rpm * RAD_S_PER_RPM).max(SPEED_MIN_RAD_S);
         let torque_nm = power_w.max(0.0) / EFFICIENCY / engine_rad_s;
         let load_percent = (100.0 * (LOAD_IDLE + torque_nm / self.torque_max_nm)).clamp(0.0, 125.0);
-        Eec2 { load_percent }.encode().expect("a clamped load is in the frame's range")
+        let frame = Eec2 { load_percent }.encode().expect("a clamped load is in the frame's range");
+        saying_only(2..3, frame)
     }
 }
 
 fn et1() -> Frame {
-    Et1 { coolant_deg_c: COOLANT_DEG_C }.encode().expect("a temperature in the frame's range")
+    let frame = Et1 { coolant_deg_c: COOLANT_DEG_C }.encode();
+    saying_only(0..1, frame.expect("a temperature in the frame's range"))
 }
 
 /// The engine's frame at a speed; a speed that the frame cannot say is said as its nearest.
 fn eec1(speed_rpm: f64) -> Frame {
     let engine_speed_rpm = speed_rpm.clamp(0.0, SPEED_RANGE_RPM[1]);
-    Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range")
+    let frame =
+        Eec1 { engine_speed_rpm }.encode().expect("a clamped speed is in the frame's range");
+    saying_only(3..5, frame)
+}
+
+/// The frame with all but those bytes "not available" (SAE J1939-71, 5.1.4; the recorded machine's too). Zeros
+/// there are a torque of -125 % and oil at -273 degC to whoever reads them.
+fn saying_only(bytes: Range<usize>, mut frame: Frame) -> Frame {
+    let others = frame.data_mut().iter_mut().enumerate().filter(|(i, _)| !bytes.contains(i));
+    others.for_each(|(_, byte)| *byte = NOT_AVAILABLE);
+    frame
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_dbc::CanId;
+
+    use super::*;
+
+    /// The request of 1800 rpm (14400 eighths) from an engine of 1200, its mode byte so.
+    fn asked(id: CanId, mode: u8) -> Engine {
+        let mut engine = Engine::new(1200.0);
+        engine.on_frame(&Frame::new(id, &[mode, 0x40, 0x38, 0, 255, 0, 255, 255]).unwrap());
+        engine
+    }
+
+    #[test]
+    fn a_request_is_followed_within_the_governors_time() {
+        let mut engine = asked(CanId::Extended(1), 1);
+        (0..30).for_each(|_| engine.step(0.01));
+        let wanted_rpm = 1800.0 - 600.0 * (-1.0_f64).exp();
+        assert!((engine.speed_rpm() - wanted_rpm).abs() < 1e-6, "{}", engine.speed_rpm());
+        (0..1000).for_each(|_| engine.step(0.01));
+        assert!((engine.speed_rpm() - 1800.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_no_request_is_left_alone() {
+        for (id, mode) in
+            [(CanId::Extended(2), 1), (CanId::Standard(1), 1), (CanId::Extended(1), 0)]
+        {
+            let mut engine = asked(id, mode);
+            engine.step(10.0);
+            assert_eq!(engine.speed_rpm(), 1200.0, "{id} {mode}");
+        }
+        assert_eq!([Engine::new(100.0), Engine::new(9e9)].map(|e| e.speed_rpm()), SPEED_RANGE_RPM);
+    }
+
+    #[test]
+    fn what_the_engine_does_not_say_is_not_available() {
+        let state = VehicleState { engine_speed_rpm: 1200.0, ..VehicleState::default() };
+        let frames = EngineSpeaker::new(1300.0).frames(SimTime::ZERO, &state);
+        let said = frames.map(|frame| format!("{:?}", frame.expect("all are due at first")));
+        // The first as in the logs of the recorded machine. 10 % of load, 125 - 40 degC.
+        let wanted =
+            ["0CF00400#FFFFFF8025FFFFFF", "0CF00300#FFFF0AFFFFFFFFFF", "18FEEE00#7DFFFFFFFFFFFFFF"];
+        assert_eq!(said, wanted);
+    }
 }

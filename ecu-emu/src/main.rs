@@ -4,11 +4,15 @@
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
 
 mod args;
+mod listening;
 mod realtime;
 mod schedule;
 mod serial;
+mod watch;
 mod wire_buses;
 
+use std::fmt::Display;
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -18,8 +22,13 @@ fn main() -> ExitCode {
     match realtime::run(&args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(problem) => {
-            eprintln!("ecu-emu: {problem}");
+            tell(problem);
             ExitCode::from(2)
         }
     }
+}
+
+/// Says something on stderr. Where nobody reads that any more, nobody is told, and the machine goes on.
+fn tell(what: impl Display) {
+    let _ = writeln!(std::io::stderr(), "ecu-emu: {what}");
 }

@@ -86,23 +86,29 @@ pub(crate) struct Supplies {
     events: Vec<PowerEvent>,
     /// Up to here resets have been carried out.
     reset_to_s: Option<f64>,
+    /// When the voltages were last looked at.
+    looked_s: Option<f64>,
 }
 
 impl Supplies {
     pub(crate) fn new(events: &[PowerEvent]) -> Self {
-        Self { events: events.to_vec(), reset_to_s: None }
+        Self { events: events.to_vec(), reset_to_s: None, looked_s: None }
     }
 
-    /// Voltage at `ecu`, mV.
-    pub(crate) fn voltage_mv(&self, now: SimTime, ecu: EcuName) -> f64 {
+    /// Voltages of SMS and DMS at `now`, mV; of a dip that came and went since the last look, what it left: an
+    /// ECU does not sleep between two ticks.
+    pub(crate) fn voltages_mv(&mut self, now: SimTime) -> [f64; 2] {
         let now_s = now.as_secs_f64();
-        let dips = self.events.iter().filter(|event| {
-            let end_s = event.at_s + event.for_s.unwrap_or(DIP_S);
-            event.kind == PowerKind::BrownOut
-                && event.concerns(ecu)
-                && (event.at_s..end_s).contains(&now_s)
-        });
-        dips.map(|dip| dip.to_v.unwrap_or(DIP_V) * 1e3).fold(NOMINAL_MV, f64::min)
+        let looked_s = self.looked_s.replace(now_s);
+        [EcuName::Sms, EcuName::Dms].map(|ecu| {
+            let dips = self.events.iter().filter(|event| {
+                let (from_s, to_s) = (event.at_s, event.at_s + event.for_s.unwrap_or(DIP_S));
+                let is_on = (from_s..to_s).contains(&now_s);
+                let was_on = to_s <= now_s && looked_s.is_some_and(|looked_s| from_s > looked_s);
+                event.kind == PowerKind::BrownOut && event.concerns(ecu) && (is_on || was_on)
+            });
+            dips.map(|dip| dip.to_v.unwrap_or(DIP_V) * 1e3).fold(NOMINAL_MV, f64::min)
+        })
     }
 
     /// Which ECUs are reset at `now`, each reset told once: SMS, DMS.
@@ -132,11 +138,20 @@ mod tests {
     fn a_dip_is_of_its_ecu_and_ends() {
         let dip =
             PowerEvent { to_v: Some(5.0), ..event(1.0, PowerKind::BrownOut, Some(EcuName::Sms)) };
-        let supplies = Supplies::new(&[dip]);
-        let mv = |ms, ecu| supplies.voltage_mv(SimTime::from_millis(ms), ecu);
-        assert_eq!(mv(990, EcuName::Sms), 24_000.0);
-        assert_eq!([mv(1000, EcuName::Sms), mv(1090, EcuName::Sms)], [5_000.0; 2]);
-        assert_eq!([mv(1100, EcuName::Sms), mv(1050, EcuName::Dms)], [24_000.0; 2]);
+        let mut supplies = Supplies::new(&[dip]);
+        let mut mv = |ms| supplies.voltages_mv(SimTime::from_millis(ms));
+        assert_eq!(mv(990), [24_000.0; 2]);
+        assert_eq!([mv(1000), mv(1050), mv(1090)], [[5_000.0, 24_000.0]; 3]);
+        assert_eq!(mv(1100), [24_000.0; 2]);
+    }
+
+    #[test]
+    fn a_dip_between_two_ticks_is_no_less_of_one() {
+        let blink = PowerEvent { for_s: Some(0.004), ..event(1.003, PowerKind::BrownOut, None) };
+        let mut supplies = Supplies::new(&[blink]);
+        let mut mv = |ms| supplies.voltages_mv(SimTime::from_millis(ms));
+        let seen = [mv(990), mv(1000), mv(1010), mv(1020)];
+        assert_eq!(seen, [[24_000.0; 2], [24_000.0; 2], [6_000.0; 2], [24_000.0; 2]]);
     }
 
     #[test]

@@ -11,15 +11,18 @@ use ecu_emu::{
     Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, UnheardEffect, Wire,
     write_truth_row,
 };
-use xt28_bus::{Bus, SocketCan};
+use xt28_bus::{Bus, BusState, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
 use crate::args::Args;
-use crate::schedule::Schedule;
+use crate::listening;
+use crate::schedule::{STALE, Schedule};
 use crate::serial::Serial;
+use crate::tell;
+use crate::watch::Watch;
 use crate::wire_buses::WireBuses;
 
 type Problem = Box<dyn std::error::Error>;
@@ -29,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     let config = config(args)?;
     let mut bus = SocketCan::open(&args.bus)?;
     let mut wires = WireBuses::open(&args.wires)?;
-    let serial = Serial::open(args.gnss_link.as_deref())
+    let mut serial = Serial::open(args.gnss_link.as_deref())
         .map_err(|error| format!("cannot open a pseudo-terminal for the receiver: {error}"))?;
     let mut truth = args.truth.as_deref().map(open_truth).transpose()?;
     let stop = Arc::new(AtomicBool::new(false));
@@ -37,16 +40,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         signal_hook::flag::register(signal, Arc::clone(&stop))?;
     }
     let mut emulator = Emulator::new(&config);
-    // The reader of this line knows that the machine has settled and listens.
-    println!("{{\"bus\":\"{}\",\"gnss\":\"{}\"}}", args.bus, serial.path().display());
-    std::io::stdout().flush()?;
-
-    let mut schedule = Schedule::new(Instant::now());
+    // What came while the machine settled, or while nobody took the line that says so, is of nobody knows when.
+    // What its reader sends is heard.
+    listening::discard(&mut bus)?;
+    wires.discard()?;
+    let settled = Instant::now();
+    tell_where(&args.bus, serial.path())
+        .map_err(|error| format!("cannot write to stdout: {error}"))?;
+    if settled.elapsed() > STALE {
+        listening::discard(&mut bus)?;
+        wires.discard()?;
+    }
+    let (mut schedule, mut watch) = (Schedule::new(Instant::now()), Watch::default());
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
     let over = |wall: SimTime| last.is_some_and(|last| wall.since(SimTime::ZERO) >= last);
     while !stop.load(Ordering::Relaxed) && !over(schedule.on_the_wall(now)) {
-        listen_until_due(&mut bus, &mut emulator, now, &schedule)?;
+        listening::until_due(&mut bus, &mut emulator, now, &schedule, &mut watch)?;
+        let off = [bus.take_bus_off(), bus.state() == BusState::BusOff];
+        watch.news(&args.bus, off).into_iter().flatten().for_each(tell);
         let at = Instant::now();
         if schedule.is_stale(now, at) {
             wires.discard()?;
@@ -66,18 +78,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         bytes.clear();
         emulator.take_gnss(&mut bytes);
         if !bytes.is_empty() {
-            serial.send(&bytes)?;
+            serial.send(&bytes).map_err(|error| format!("{}: {error}", serial.path().display()))?;
         }
         now += TICK;
     }
     if let Some((file, path)) = &mut truth {
         file.flush().map_err(|error| format!("{}: {error}", path.display()))?;
     }
-    eprintln!("ecu-emu: {schedule}");
-    if let Some(frames @ 1..) = bus.receive_drops() {
-        eprintln!("ecu-emu: {frames} frames came and were lost: nobody read them in time");
+    tell(schedule);
+    if let frames @ 1.. = u64::from(bus.receive_drops().unwrap_or(0)) + wires.receive_drops() {
+        tell(format_args!("{frames} frames came and were lost: nobody read them in time"));
     }
     Ok(())
+}
+
+/// The reader of this line knows that the machine has settled and listens.
+fn tell_where(bus: &str, gnss: &Path) -> std::io::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    writeln!(stdout, "{{\"bus\":\"{bus}\",\"gnss\":\"{}\"}}", gnss.display())?;
+    stdout.flush()
 }
 
 fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
@@ -111,6 +130,14 @@ fn config(args: &Args) -> Result<EmulatorConfig, Problem> {
     config.mishaps.faults.extend(&args.sensor_fault);
     config.solver = args.solver;
     config.profile = args.profile;
+    if let Some((wire, _)) = args.wires.iter().find(|(_, interface)| *interface == args.bus) {
+        return Err(format!(
+            "--wire {wire}={}: that is the interface of --bus, where the same identifiers mean other \
+             things; give the wire one of its own",
+            args.bus
+        )
+        .into());
+    }
     if args.profile == Profile::Paper && (args.operator.is_some() || !args.quirks.is_empty()) {
         return Err("--operator and --quirk are for the firmware of 2016; \
                     give --profile 2016 too"
@@ -137,36 +164,23 @@ fn open_truth(path: &Path) -> Result<(BufWriter<File>, PathBuf), Problem> {
     Ok((file, path.to_owned()))
 }
 
-/// Takes frames off the bus until the tick of `now` is due; sleeps in between.
-///
-/// An emulator that is behind hears no frame later than its own time: one that came while it was held up must
-/// not count as fresh until it has caught up. After a halt it has heard none of those that waited.
-fn listen_until_due(
-    bus: &mut SocketCan,
-    emulator: &mut Emulator,
-    now: SimTime,
-    schedule: &Schedule,
-) -> Result<(), Problem> {
-    loop {
-        while let Some(received) = bus.receive()? {
-            let at = Instant::now();
-            if !schedule.is_stale(now, at) {
-                emulator.on_frame(schedule.time(at).min(now), &received.frame);
-            }
-        }
-        let left = schedule.due(now).saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Ok(());
-        }
-        bus.wait(left)?;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use clap::Parser;
 
     use super::*;
+
+    #[test]
+    fn a_wire_is_refused_the_interface_of_the_bus() {
+        let with = |wires: &[&str]| {
+            let wires = wires.iter().flat_map(|wire| ["--wire", wire]);
+            config(&Args::parse_from(["ecu-emu", "--bus", "vcan0"].into_iter().chain(wires)))
+        };
+        // The arm ECU would take its own copies of the inertial unit's frames, X for Y, for the unit's.
+        let error = with(&["display=vcan1", "inertial=vcan0"]).unwrap_err().to_string();
+        assert!(error.starts_with("--wire inertial=vcan0: "), "{error}");
+        assert!(with(&["display=vcan1", "left-armrest=vcan1"]).is_ok(), "wires may share one");
+    }
 
     #[test]
     fn a_start_beyond_the_machines_own_stroke_is_refused() {

@@ -78,3 +78,46 @@ impl Receiver {
         .encode(bytes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::SimTime;
+    use xt28_ubx::{Message, Parser};
+
+    use super::*;
+
+    /// 3 m east, 4 m north and 5 m up of its origin, going 0.6 m/s east and 0.8 m/s north, 0.1 m/s up, and facing
+    /// 30 degrees to the left of east: 60 to the right of north.
+    #[test]
+    fn a_fix_is_said_in_the_receivers_own_axes() {
+        let fix = GnssFix {
+            at: SimTime::from_millis(12_125),
+            position_m: [3.0, 4.0, 5.0],
+            velocity_m_s: [0.6, 0.8, 0.1],
+            heading_rad: 30.0_f64.to_radians(),
+            accuracy_m: 0.02,
+        };
+        let mut bytes = Vec::new();
+        Receiver::new(Geodetic::BENCH_ORIGIN).encode(&fix, &mut bytes).unwrap();
+        let mut parser = Parser::new();
+        let said: Vec<Message> = parser.push(&bytes).collect();
+        let [Message::HpPosLlh(place), Message::Pvt(pvt), Message::RelPosNed(baseline)] = &said[..]
+        else {
+            panic!("{said:?}")
+        };
+        assert_eq!(
+            [place.time_of_week_ms, pvt.time_of_week_ms, baseline.time_of_week_ms],
+            [12_125; 3]
+        );
+        let local = LocalFrame::new(Geodetic::BENCH_ORIGIN).to_local(place.position);
+        let off_m = [local.east_m - 3.0, local.north_m - 4.0, local.up_m - 5.0];
+        assert!(off_m.iter().all(|off_m| off_m.abs() < 1e-3), "{local:?}");
+        let near = |a: f64, b: f64| (a - b).abs() < 2e-3;
+        assert!(near(pvt.velocity_east_m_s, 0.6) && near(pvt.velocity_north_m_s, 0.8), "{pvt:?}");
+        assert!(near(pvt.velocity_down_m_s, -0.1) && near(pvt.speed_ground_m_s, 1.0), "{pvt:?}");
+        // Right of north: atan(0.6 / 0.8).
+        assert!(near(pvt.course_rad, 0.6435), "{pvt:?}");
+        assert!(near(baseline.heading_rad, 60.0_f64.to_radians()), "{baseline:?}");
+        assert!(near(baseline.north_m, 0.5) && near(baseline.east_m, 0.866), "{baseline:?}");
+    }
+}

@@ -8,7 +8,7 @@ use xt28_machine::SimTime;
 /// A tick that is later than this is not made up for: as many ticks at once as an ECU goes without a command.
 const PUT_OFF: Duration = Duration::from_millis(30);
 /// What came while a tick was later than this is stale: the gateway has given up on its senders as well.
-const STALE: Duration = Duration::from_millis(100);
+pub(crate) const STALE: Duration = Duration::from_millis(100);
 
 /// The wall time of every tick, and how late they were.
 ///
@@ -100,6 +100,20 @@ mod tests {
         assert_eq!(schedule.due(AT(30)), start + MS(30), "at once");
         assert_eq!(schedule.on_the_wall(AT(30)), AT(30));
         assert_eq!(schedule.to_string(), "1 ticks, late 25ms on average, 25ms at worst");
+    }
+
+    #[test]
+    fn three_ticks_are_the_most_that_is_made_up_for_and_a_tenth_of_a_second_the_most_that_is_heard()
+    {
+        let start = Instant::now();
+        let put_off = [30, 31].map(|ms| {
+            let mut schedule = Schedule::new(start);
+            schedule.begin(AT(0), start + MS(ms));
+            schedule.due(AT(0)) > start
+        });
+        assert_eq!(put_off, [false, true]);
+        let schedule = Schedule::new(start);
+        assert_eq!([100, 101].map(|ms| schedule.is_stale(AT(0), start + MS(ms))), [false, true]);
     }
 
     #[test]

@@ -317,6 +317,8 @@ mod tests {
         assert_eq!(stroke_mv("stroke:FL:short-to-battery@0", 0.0)[Wheel::Fl], 5_500.0);
         assert_eq!(stroke_mv("stroke:FL:offset=-40@0", 0.0)[Wheel::Fl], healthy - 40.0);
         assert_eq!(faulty("wheel-speed:BR:open-circuit@0", 0.0).drive.wheel_hz[Wheel::Br], 0.0);
+        let slow = faulty("wheel-speed:BR:offset=-1e6@0", 0.0).drive.wheel_hz[Wheel::Br];
+        assert_eq!(slow, 0.0, "no fewer pulses than none");
         let joint_mv = faulty("joint-rear:offset=10@0", 0.0).drive.joint_rear_mv;
         assert!((joint_mv - pins::joint_rear_mv(0.0) - 10.0).abs() < 1e-9);
     }

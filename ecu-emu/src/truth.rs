@@ -29,3 +29,49 @@ pub fn write_truth_row(out: &mut impl Write, now: SimTime, s: &VehicleState) -> 
     }
     writeln!(out, ",{:.0}", s.chassis_force_n)
 }
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::PerWheel;
+
+    use super::*;
+
+    #[test]
+    fn every_column_has_what_its_name_says() {
+        let state = VehicleState {
+            position_m: [1.0, 2.0, 3.0],
+            yaw_rad: 0.1,
+            roll_rad: 0.2,
+            pitch_rad: 0.3,
+            ground_force_n: PerWheel([11.0, 12.0, 13.0, 14.0, 15.0, 16.0]),
+            chassis_force_n: 17.0,
+            ..VehicleState::default()
+        };
+        let mut row = Vec::new();
+        write_truth_row(&mut row, SimTime::from_millis(1_250), &state).unwrap();
+        let row = String::from_utf8(row).unwrap();
+        assert!(row.ends_with('\n'));
+        let named: Vec<(&str, f64)> = TRUTH_HEADER
+            .split(',')
+            .zip(row.trim().split(',').map(|x| x.parse().unwrap()))
+            .collect();
+        assert_eq!(row.split(',').count(), TRUTH_HEADER.split(',').count());
+        let wanted = [
+            ("time_s", 1.25),
+            ("x_m", 1.0),
+            ("y_m", 2.0),
+            ("z_m", 3.0),
+            ("yaw_rad", 0.1),
+            ("roll_rad", 0.2),
+            ("pitch_rad", 0.3),
+            ("ground_fr_n", 11.0),
+            ("ground_fl_n", 12.0),
+            ("ground_mr_n", 13.0),
+            ("ground_ml_n", 14.0),
+            ("ground_br_n", 15.0),
+            ("ground_bl_n", 16.0),
+            ("chassis_n", 17.0),
+        ];
+        assert_eq!(named, wanted);
+    }
+}

@@ -4,6 +4,8 @@ use ecu_emu::{Emulator, Wire};
 use xt28_bus::{Bus, SocketCan};
 use xt28_machine::SimTime;
 
+use crate::listening::{AT_ONCE, discard};
+
 type Problem = Box<dyn std::error::Error>;
 
 /// Wires that have an interface.
@@ -20,7 +22,8 @@ impl WireBuses {
     /// Takes what others sent since the last tick. An ECU reads its boxes once a tick anyway.
     pub(crate) fn listen(&mut self, now: SimTime, emulator: &mut Emulator) -> Result<(), Problem> {
         for (wire, bus) in &mut self.buses {
-            while let Some(received) = bus.receive()? {
+            for _ in 0..AT_ONCE {
+                let Some(received) = bus.receive()? else { break };
                 emulator.on_wire_frame(now, *wire, &received.frame);
             }
         }
@@ -30,7 +33,7 @@ impl WireBuses {
     /// Throws away what others sent since the last tick.
     pub(crate) fn discard(&mut self) -> Result<(), Problem> {
         for (_, bus) in &mut self.buses {
-            while bus.receive()?.is_some() {}
+            discard(bus)?;
         }
         Ok(())
     }
@@ -43,5 +46,10 @@ impl WireBuses {
             }
         }
         Ok(())
+    }
+
+    /// Frames that came on them and were lost, because nobody read them in time.
+    pub(crate) fn receive_drops(&self) -> u64 {
+        self.buses.iter().filter_map(|(_, bus)| bus.receive_drops()).map(u64::from).sum()
     }
 }

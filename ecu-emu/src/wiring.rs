@@ -76,3 +76,29 @@ pub(crate) fn setting(config: &EmulatorConfig, s: &VehicleState, engine_rpm: f64
         ..Actuation::idle(engine_rpm)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_output_moves_what_hangs_on_it() {
+        let mut arm = ArmOutputs::default();
+        (arm.solenoid_a_ma[Wheel::Fl], arm.solenoid_b_ma[Wheel::Br]) = (600.0, 480.0);
+        let drive = DriveOutputs {
+            pump_ma: [0.0, 400.0, 605.0, 0.0],
+            motor_ma: PerWheel([0.0, 400.0, 0.0, 0.0, 0.0, 650.0]),
+            steer_front_a_ma: 730.0,
+            steer_rear_b_ma: 572.5,
+            ..DriveOutputs::default()
+        };
+        let moved = actuation(&arm, &drive, 1100.0);
+        assert_eq!(moved.arm_opening, PerWheel([0.0, -0.5, 0.0, 0.0, 0.2, 0.0]));
+        assert_eq!(moved.pump_displacement, [0.5, -1.0]);
+        assert_eq!(moved.motor_displacement, PerWheel([1.0, 0.5, 1.0, 1.0, 1.0, 0.0]));
+        assert_eq!(moved.steer_opening, [1.0, -0.5]);
+        assert_eq!((moved.engine_speed_rpm, moved.brake_released), (1100.0, false));
+        let released = DriveOutputs { brake_released: true, ..drive };
+        assert!(actuation(&arm, &released, 1100.0).brake_released);
+    }
+}

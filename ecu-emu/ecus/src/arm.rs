@@ -68,6 +68,8 @@ pub struct ArmEcu {
     commands: ArmCommands,
     state: State,
     refusal: Refusal,
+    /// A silence stopped what was carried out, and lasts.
+    commands_lost: bool,
     gains: PerWheel<PositionGains>,
     limit: StrokeLimit,
     control: PerWheel<PositionControl>,
@@ -96,6 +98,7 @@ impl ArmEcu {
             commands: ArmCommands::new(machine.arms.stroke_max_m),
             state: State::Init,
             refusal: Refusal::None,
+            commands_lost: false,
             gains: PerWheel::splat(PositionGains::new(&machine.hydraulics)),
             limit: StrokeLimit::up_to(machine.arms.stroke_max_m),
             control: PerWheel::splat(PositionControl::default()),
@@ -169,9 +172,11 @@ impl ArmEcu {
         if matches!(self.state, State::Standby | State::Active) {
             self.restarted_by = None;
         }
-        if let Some(refusal) = self.state.refusal(before, commanded) {
-            self.refusal = refusal;
-        }
+        let refusal = self.state.refusal(before, commanded);
+        self.refusal = refusal.unwrap_or(self.refusal);
+        // Not read off the last refusal: any frame may change that, and it outlives the silence.
+        let stopped = self.commands_lost || refusal == Some(Refusal::Deadline);
+        self.commands_lost = commanded.is_none() && stopped;
 
         let demand = demand.filter(|_| self.state == State::Active).unwrap_or(ArmDemand::Off);
         let currents = self.currents(&demand, &readings, health);
@@ -260,7 +265,7 @@ impl ArmEcu {
         let seen = ArmSeen {
             stroke_mm: &readings.stroke_mm,
             attitude_lost: self.attitude.is_lost(now),
-            commands_lost: demand.is_none() && self.refusal == Refusal::Deadline,
+            commands_lost: demand.is_none() && self.commands_lost,
             restarted_by: self.restarted_by,
         };
         let found = self.monitor.step(now, pins, seen, self.diagnostics.memory());

@@ -94,6 +94,8 @@ pub struct DriveEcu {
     commands: CommandStream<DriveDemand>,
     state: State,
     refusal: Refusal,
+    /// A silence stopped what was carried out, and lasts.
+    commands_lost: bool,
     throttle: ThrottleLag,
     trim: SlipTrim,
     relief: Relief,
@@ -126,6 +128,7 @@ impl DriveEcu {
             commands: CommandStream::default(),
             state: State::Init,
             refusal: Refusal::None,
+            commands_lost: false,
             throttle: ThrottleLag::new(&machine.drive),
             trim: SlipTrim::new(&machine),
             relief: Relief::default(),
@@ -200,9 +203,11 @@ impl DriveEcu {
         if matches!(self.state, State::Standby | State::Active) {
             self.restarted_by = None;
         }
-        if let Some(refusal) = self.state.refusal(before, commanded) {
-            self.refusal = refusal;
-        }
+        let refusal = self.state.refusal(before, commanded);
+        self.refusal = refusal.unwrap_or(self.refusal);
+        // Not read off the last refusal: any frame may change that, and it outlives the silence.
+        let stopped = self.commands_lost || refusal == Some(Refusal::Deadline);
+        self.commands_lost = commanded.is_none() && stopped;
 
         let braked = self.brake.step(now, self.state, demand.map(|d| d.brake), readings.speed_m_s);
         out.brake_released = !braked;
@@ -219,7 +224,7 @@ impl DriveEcu {
         let mut can1 = core::mem::take(&mut out.can1);
         frames::sensors(&readings, self.wheel_counter.next_count(), &mut can1);
         frames::currents(out, &mut can1);
-        frames::machine(&readings, braked, pump, self.engine.speed_rpm(), &mut can1);
+        frames::machine(&readings, braked, pump, &self.engine, &mut can1);
         let status = frames::Status {
             state: self.state,
             faults,
@@ -275,7 +280,7 @@ impl DriveEcu {
         }
         let driven = throttle != 0.0;
         let target = droop::demand(throttle, self.working_rpm, self.engine.asked_rpm());
-        let share = self.relief.step(self.engine.speed_share(now), driven);
+        let share = self.relief.step(self.engine.step(now), driven);
         let displacement = displacements(self.throttle.step(target) * share);
         let [a_ma, b_ma] = pins::pump_ma(displacement.pump);
         let asked = pins::pump_displacement(a_ma, b_ma);
@@ -313,7 +318,7 @@ impl DriveEcu {
     fn diagnose(&mut self, now: SimTime, pins: &DrivePins, silence: bool) -> (Health, u16) {
         let seen = DriveSeen {
             engine_lost: self.engine.is_lost(now),
-            commands_lost: silence && self.refusal == Refusal::Deadline,
+            commands_lost: silence && self.commands_lost,
             restarted_by: self.restarted_by,
         };
         self.monitor.step(now, pins, seen, self.diagnostics.memory())

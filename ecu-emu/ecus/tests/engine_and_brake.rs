@@ -1,6 +1,6 @@
 //! The drive ECU's engine link, brake and display frame, on the bus.
 
-use xt28_dbc::messages::{DriveStatus, DriveStatusState, DriveTarget, Eec1, MachineStatus};
+use xt28_dbc::messages::{DriveStatus, DriveStatusState, DriveTarget, Eec1, Et1, MachineStatus};
 use xt28_dbc::{CanId, Frame};
 use xt28_ecus::{DriveEcu, DriveOutputs, DrivePins, Port, State, pins};
 use xt28_machine::{Machine, PerWheel, SimTime, Wheel};
@@ -159,4 +159,22 @@ fn a_silent_engine_is_reported_and_its_speed_shown() {
             break;
         }
     }
+}
+
+/// Facts 2.5: -40 before the first frame, and no more than a signed byte can say. 215 is "not available".
+#[test]
+fn coolant_is_shown_once_the_engine_has_spoken_of_it() {
+    let mut rig = Rig::new();
+    let mut shown = |coolant_deg_c: Option<f64>| {
+        if let Some(coolant_deg_c) = coolant_deg_c {
+            let frame = Et1 { coolant_deg_c }.encode().unwrap();
+            rig.ecu.on_frame(rig.now(), Port::Can3, &frame);
+        }
+        let (_, display) = rig.tick();
+        // A machine of the paper steers by following, from a seat to the front.
+        assert_eq!((display.turn_mode, display.chair), (64, 0));
+        display.coolant_deg_c
+    };
+    let heard = [None, Some(85.0), None, Some(215.0), Some(128.0)];
+    assert_eq!(heard.map(&mut shown), [-40.0, 85.0, 85.0, 85.0, 127.0]);
 }

@@ -165,6 +165,19 @@ fn a_lost_armrest_shuts_the_valves() {
     }
 }
 
+/// Facts 3.1, 3.9: the fault task runs 5 ms after power-up and every 50 ms. A missing armrest has counted to 200
+/// when it runs for the fifth time, at 205 ms: the frames of 210 ms are the first to say so.
+#[test]
+fn an_armrest_that_never_spoke_is_missed_by_the_fifth_fault_task() {
+    let mut arm = Arm::new(Quirks::firmware());
+    arm.buttons = None;
+    let quiet = (0..60).take_while(|_| {
+        arm.tick();
+        arm.display().alert == 0
+    });
+    assert_eq!(10 * quiet.count(), 210);
+}
+
 #[test]
 fn any_preset_jog_or_passive_button_drops_levelling() {
     for button in [1, 2, 5, 8, 10, 15, 17, 20] {

@@ -143,6 +143,16 @@ fn held_buttons_19_and_20_move_the_limit() {
     assert_eq!(limit(&drive), 10.0);
 }
 
+/// Facts 2.5: half degrees, cut off.
+#[test]
+fn the_display_shows_the_joints_in_half_degrees() {
+    let mut drive = drive();
+    drive.joints(10.7, -5.3);
+    drive.tick();
+    let status = drive.status();
+    assert_eq!((status.front_joint_deg, status.rear_joint_deg), (10.5, -5.0));
+}
+
 #[test]
 fn turn_modes_send_the_joystick_to_their_joints() {
     let mut drive = drive();

@@ -147,3 +147,24 @@ fn a_dragged_engine_is_asked_for_less_and_recovers() {
     rig.drive(30.0, 10.0);
     assert!((rig.pumps()[0] - free).abs() < 1e-4);
 }
+
+/// Asked for more it takes its time, and is not dragged meanwhile: 400 rpm more with a governor of 0.3 s. The
+/// throttle's own lag is shorter, so the machine slows down a little; taken for dragged, it would nearly stop.
+#[test]
+fn an_engine_that_still_speeds_up_is_not_dragged() {
+    let mut rig = Rig::new();
+    rig.drive(30.0, 2.0);
+    rig.asked_rpm = 1600.0;
+    let mut slowest = f64::MAX;
+    for tick in 0..1000 {
+        rig.engine_rpm = 1600.0 - 400.0 * (-f64::from(tick) / 30.0).exp();
+        rig.drive(30.0, 0.01);
+        slowest = slowest.min(rig.speed_share());
+    }
+    assert!((0.25..0.30).contains(&slowest), "{slowest}");
+    assert!((rig.speed_share() - 0.30).abs() < 0.005);
+    let free = rig.pumps()[0];
+    rig.engine_rpm = 0.80 * 1600.0;
+    rig.drive(30.0, 0.1);
+    assert!((rig.pumps()[0] / free - 0.278).abs() < 0.01, "dragged then as ever");
+}

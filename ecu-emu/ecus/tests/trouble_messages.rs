@@ -23,6 +23,18 @@ fn mended() -> Bench {
     bench
 }
 
+/// Nothing fails at a stand, and that is told as well: once a second, by each ECU.
+#[test]
+fn active_codes_are_told_once_a_second() {
+    let mut bench = Bench::new();
+    bench.run(200);
+    let frames = bench.run(1000);
+    // The drive ECU misses an engine here: one code, which fits a frame.
+    for id in [0x18FE_CA28, 0x18FE_CA29] {
+        assert_eq!(frames.iter().filter(|f| f.id().raw() == id).count(), 10, "{id:X}");
+    }
+}
+
 #[test]
 fn more_than_one_active_code_goes_by_broadcast() {
     let (_, frames) = broken();

@@ -47,6 +47,20 @@ fn valves_open_as_told_up_to_the_cap_while_both_streams_live() {
     assert_eq!(arm.tick().state, ArmStatusState::SafeStop, "openings stayed away");
 }
 
+/// The mode may come before its first openings, by no more than any command may stay away.
+#[test]
+fn the_first_openings_may_come_three_periods_after_the_mode() {
+    let mut arm = Arm::new();
+    let states = [0; 5].map(|_| {
+        arm.send(ArmTargetMode::ManualValve, HOLD_MM);
+        let status = arm.tick();
+        assert_eq!(total_ma(&arm), 0.0);
+        status.state
+    });
+    use ArmStatusState::{Active, SafeStop};
+    assert_eq!(states, [Active, Active, Active, Active, SafeStop]);
+}
+
 #[test]
 fn valves_stay_closed_towards_a_stroke_end() {
     for (stroke_mm, percent, opens) in

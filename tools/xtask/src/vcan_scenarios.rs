@@ -80,6 +80,7 @@ const TESTS: &[Test] = &[
     Test { folder: "ecu-emu", test: "service_tool", virtual_time: true },
     Test { folder: "ecu-emu", test: "wires", virtual_time: true },
     Test { folder: "ecu-emu", test: "halt", virtual_time: true },
+    Test { folder: "ecu-emu", test: "start", virtual_time: true },
     Test { folder: "gateway", test: "full_interface", virtual_time: true },
     Test { folder: "gateway", test: "full_disk", virtual_time: true },
 ];

@@ -28,7 +28,7 @@ impl Default for Relief {
 }
 
 impl Relief {
-    /// Share of the demand that the engine can bear, for its speed over the speed asked for; `None`
+    /// Share of the demand that the engine can bear, for its speed over the speed that it should have; `None`
     /// while nothing is heard of it, when nothing is done. What was taken away comes back only to a
     /// machine that is `driven`.
     pub(crate) fn step(&mut self, speed_share: Option<f64>, driven: bool) -> f64 {

@@ -9,6 +9,7 @@ use xt28_dbc::messages::{
 };
 
 use super::DriveOutputs;
+use super::engine::EngineLink;
 use super::sensing::DriveReadings;
 use crate::Refusal;
 use crate::life::State;
@@ -29,8 +30,8 @@ const DRIVE_NEUTRAL: u8 = 1;
 const DRIVE_FORWARD: u8 = 4;
 const DRIVE_REVERSE: u8 = 16;
 const CHAIR_FRONT: u8 = 0;
-/// Coolant before the engine has spoken of it, degC: ours never does.
-const COOLANT_UNKNOWN: f64 = -40.0;
+/// The hottest coolant that the display's byte can say, degC.
+const COOLANT_SHOWN_MAX_DEG_C: f64 = 127.0;
 
 pub(super) fn sensors(r: &DriveReadings, counter: u8, out: &mut Outbox) {
     let [pump1_a_bar, pump1_b_bar, pump2_a_bar, pump2_b_bar] = r.pump_pa.map(|p| p * BAR_PER_PA);
@@ -73,7 +74,7 @@ pub(super) fn machine(
     r: &DriveReadings,
     brake: bool,
     pump: f64,
-    engine_speed_rpm: f64,
+    engine: &EngineLink,
     out: &mut Outbox,
 ) {
     let [front_joint_deg, rear_joint_deg] = r.joint_deg;
@@ -88,8 +89,8 @@ pub(super) fn machine(
         chair: CHAIR_FRONT,
         front_joint_deg,
         rear_joint_deg,
-        engine_speed_rpm: engine_speed_rpm.clamp(0.0, 2550.0),
-        coolant_deg_c: COOLANT_UNKNOWN,
+        engine_speed_rpm: engine.speed_rpm().clamp(0.0, 2550.0),
+        coolant_deg_c: engine.coolant_deg_c().min(COOLANT_SHOWN_MAX_DEG_C),
     };
     send(out, &machine.encode());
 }

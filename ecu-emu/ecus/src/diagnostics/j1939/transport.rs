@@ -231,6 +231,18 @@ mod tests {
         assert!(transport.is_idle());
     }
 
+    /// T4: a peer that said to hold on is waited for a little less long than one that said nothing.
+    #[test]
+    fn a_peer_that_never_goes_on_is_told_and_left() {
+        let mut transport = Transport::new();
+        transport.start(pgn::DM2, 0xF9, &[0; 20]);
+        transport.poll(at(0), 0x28);
+        transport.on_control(at(1000), 0xF9, &[CTS, 0, 0xFF, 0xFF, 0xFF, 0xCB, 0xFE, 0]);
+        assert_eq!(text(transport.poll(at(2050), 0x28)), "nothing");
+        assert_eq!(text(transport.poll(at(2051), 0x28)), "1CECF928#FF03FFFFFFCBFE00");
+        assert!(transport.is_idle());
+    }
+
     #[test]
     fn a_long_message_to_us_is_refused() {
         let mut transport = Transport::new();

@@ -137,6 +137,18 @@ mod tests {
         assert_eq!(other.step(-5, FAST, Quirks::none()), [0, 0]);
     }
 
+    /// Facts 4.6: up to a tenth of a degree nothing is integrated, and what was is dropped. 100 ticks of 5 degrees
+    /// are an I part of 25; with the P part of 4 that is 2 mA, and 4 alone are none.
+    #[test]
+    fn a_tenth_of_a_degree_drops_the_integral() {
+        let quirks = Quirks::none();
+        let mut follower = awake(500, quirks);
+        (0..100).for_each(|_| _ = follower.step(500, FAST, quirks));
+        assert_eq!(follower.step(11, FAST, quirks), [417, 0]);
+        assert_eq!(follower.step(10, FAST, quirks), [0, 0]);
+        assert_eq!(follower.step(11, FAST, quirks), [0, 0]);
+    }
+
     /// P of 2000 and I of 500 together: 212 mA above rest, or the 85 of the rear valve.
     #[test]
     fn its_current_may_exceed_the_rear_valve_s() {

@@ -60,6 +60,7 @@ mod tests {
         let firmware = Quirks::firmware();
         assert_eq!([settled(80, 400, firmware), settled(-80, 400, firmware)], [0, 0]);
         assert!((settled(150, 400, firmware) - (300 - 160)).abs() <= 1);
+        assert!((settled(398, 500, firmware) - (796 - 160)).abs() <= 1);
         assert_eq!(settled(398, 501, firmware), 0);
         assert!((settled(500, 501, firmware) - (1000 - 796)).abs() <= 1);
     }

@@ -22,6 +22,8 @@ const SHUT: f64 = 0.9;
 const ROUNDING: f64 = 1e-3;
 /// Samples about the instant at which a sensor becomes another within which its reading jumps.
 const JUMPS_ABOUT: usize = 4;
+/// Samples from the one with most of a jump to the first that has none of it.
+const JUMPS_OVER: usize = 2;
 
 /// One arm with all it is driven with.
 pub(super) struct ArmDrive<'a> {
@@ -212,18 +214,18 @@ impl<'a> ArmDrive<'a> {
     fn input(&self, i: usize) -> ArmInput {
         let stroke = &self.signals.stroke_m[self.wheel];
         let truth = |i: usize| self.sensing(i).stroke_m(stroke[i]);
-        let now_m = truth(i);
-        // Over one sample: what the damper makes of it is smoothed by the filter of the pressures. A jump of the
-        // reading that two samples share is no motion.
+        // A jump of the reading that samples share is no motion: the arm goes on as it did.
         let last = match self.jumps {
-            Some(jump) if (jump..jump + 2).contains(&i) => jump.saturating_sub(1),
+            Some(jump) if i.abs_diff(jump) < JUMPS_OVER => jump.saturating_sub(JUMPS_OVER),
             _ => i,
         };
+        // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
         let stroke_rate_m_s = (truth(last) - truth(last.saturating_sub(1))) / DT_S;
+        let stroke_m = truth(last) + stroke_rate_m_s * (i - last) as f64 * DT_S;
         ArmInput {
             command: self.signals.opening[self.wheel][i],
             load_n: self.sensing(i).gauge.load_n(self.loads.oil_n[i], self.loads.rod_oil_n[i]),
-            motion: CylinderMotion { stroke_m: now_m, stroke_rate_m_s },
+            motion: CylinderMotion { stroke_m, stroke_rate_m_s },
         }
     }
 

@@ -1,5 +1,6 @@
 //! Residual generators: each drives one block with measured inputs and says where it parts from the log.
 
+mod antenna;
 mod arm_drive;
 mod arms;
 mod axles;
@@ -61,8 +62,9 @@ const ROLLING: [&str; 6] = [
     "wheel-speed-scale",
 ];
 
-/// Effects that show in how the machine turns beside what its joints read: others turn the joints as well.
-const TURNING: [&str; 2] = ["gnss-latency", "slippery-ground"];
+/// Effects that show in how the machine turns beside what its joints read: others turn the joints as well. A mast that
+/// is bent does where it jumps.
+const TURNING: [&str; 3] = ["gnss-latency", "gnss-lever-arm", "slippery-ground"];
 
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -143,10 +145,11 @@ impl Generator {
         }
     }
 
-    /// When that was read which it says of `signal` at `at_s` of a run, s.
+    /// When the last was read of which it says `signal` at `at_s` of a run, s.
     pub(super) fn read_at_s(self, signal: Signal, at_s: f64) -> f64 {
         match self {
             Self::Stance => stance::read_at_s(signal, at_s),
+            Self::Turning => at_s + turning::HALF_S,
             _ => at_s,
         }
     }
@@ -255,7 +258,7 @@ impl Generator {
                 errors.map(|(signal, raw)| thinned(signal, raw)).collect()
             }
             Self::Travel => {
-                let e = travel::travel_errors(s, machine, effects);
+                let e = travel::travel_errors(s, machine, schedule);
                 let mut all = vec![one(Signal::TravelSpeed, e.speed_m_s)];
                 all.push(one(Signal::TravelCourse, e.course_rad));
                 all.extend(
@@ -268,7 +271,7 @@ impl Generator {
                 all
             }
             Self::Turning => {
-                let error = turning::yaw_rate_error_rad_s(s, machine, effects);
+                let error = turning::yaw_rate_error_rad_s(s, machine, schedule);
                 vec![thinned(Signal::YawRate, error)]
             }
             Self::Bus => {

@@ -1,11 +1,12 @@
 //! Wheel speeds against one another and against the receiver: who slips, who misreads, who is late.
 
 use xt28_machine::{Machine, PerWheel};
-use xt28_sim::Effects;
 
+use super::antenna::Antenna;
 use super::grade::Grade;
 use super::rolling::rolling_errors;
 use super::stance::antenna_leans_m;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, median};
 
 /// Errors of rolling over a run; `NaN` where nothing can be said.
@@ -30,7 +31,12 @@ const COURSE_M_S: f64 = 0.3;
 
 /// Rolling over a run.
 #[must_use]
-pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -> TravelErrors {
+pub(super) fn travel_errors(
+    s: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+) -> TravelErrors {
+    let (effects, antenna) = (schedule.effects, Antenna::new(schedule));
     let rolling = rolling_errors(s, machine, effects);
     // Distance that the wheels say, cumulated, so that a fix can be late by any time.
     let mut rolled = Vec::with_capacity(s.len + 1);
@@ -38,18 +44,19 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
     for i in 0..s.len {
         rolled.push(rolled[i] + rolling.ahead_m_s[i] * DT_S);
     }
-    let late_s = effects.sensors.gnss_latency.delay_s;
     let rolled_at = |at_s: f64| {
-        let place = ((at_s - late_s) / DT_S).clamp(0.0, (s.len) as f64 - 1e-6);
+        let place = ((at_s - antenna.late_s(at_s)) / DT_S).clamp(0.0, (s.len) as f64 - 1e-6);
         let (i, share) = (place as usize, place.fract());
         rolled[i] + share * (rolled[i + 1] - rolled[i])
     };
     let mut speed = vec![f64::NAN; s.len];
     let mut course = vec![f64::NAN; s.len];
     let ground = Grade::believed(s, effects);
-    let lever = effects.sensors.gnss_lever_arm;
     let leans_m = s.antenna_leans_m(|| antenna_leans_m(s, machine));
-    let lean_m = |at_s: f64| leans_m[(((at_s - late_s) / DT_S).max(0.0) as usize).min(s.len - 1)];
+    let lean_m = |at_s: f64| {
+        let then_s = at_s - antenna.late_s(at_s);
+        leans_m[((then_s / DT_S).max(0.0) as usize).min(s.len - 1)]
+    };
     let holds_s = 1.5 * interval_s(&s.fixes);
     for (k, &[t1, x1, y1]) in s.fixes.iter().enumerate() {
         let [t0, x0, y0] = a_window_before(&s.fixes[..=k]);
@@ -59,7 +66,9 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
         let (dx, dy) = (x1 - x0, y1 - y0);
         // Over fixes that are missing a heading in the middle says too little.
         let near = t1 - t0 < WINDOW_MOST_S;
-        let leaning_m = [0, 1].map(|axis| lean_m(t1)[axis] - lean_m(t0)[axis]);
+        // What the antenna does beside the frame: it leans with the frame, and may be bent.
+        let (lever_m, jumped_m) = (antenna.lever_m(t1), antenna.jumped_m([t0, t1]));
+        let beside_m = [0, 1].map(|axis| lean_m(t1)[axis] - lean_m(t0)[axis] + jumped_m[axis]);
         let heading = s.heading_at(0.5 * (t0 + t1)).filter(|_| near);
         let wheel_m_s = (rolled_at(t1) - rolled_at(t0)) / (t1 - t0);
         let until_s = s.fixes.get(k + 1).map_or(f64::INFINITY, |next| next[0]).min(t1 + holds_s);
@@ -69,13 +78,13 @@ pub(super) fn travel_errors(s: &Signals, machine: &Machine, effects: &Effects) -
             let (sin, cos) = heading.sin_cos();
             let wheel_m_s = wheel_m_s * ground.on_map(heading);
             if wheel_m_s.abs() > ROLLING_M_S {
-                let moved_m = cos * dx + sin * dy - leaning_m[0];
-                along = wheel_m_s - yaw_rate * lever.y_m - moved_m / (t1 - t0);
+                let moved_m = cos * dx + sin * dy - beside_m[0];
+                along = wheel_m_s - yaw_rate * lever_m[1] - moved_m / (t1 - t0);
             }
             if wheel_m_s > COURSE_M_S {
-                let antenna = machine.sensors.gnss_antenna_m;
-                let side = yaw_rate * (antenna[0] + lever.x_m);
-                let moved_m = cos * dy - sin * dx - leaning_m[1];
+                let ahead_m = machine.sensors.gnss_antenna_m[0] + lever_m[0];
+                let side = yaw_rate * ahead_m;
+                let moved_m = cos * dy - sin * dx - beside_m[1];
                 angle = side / wheel_m_s - moved_m / (t1 - t0) / wheel_m_s;
             }
         }

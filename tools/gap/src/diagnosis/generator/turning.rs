@@ -9,15 +9,17 @@ use xt28_machine::{Machine, PerWheel};
 use xt28_sim::{Effects, Parts};
 
 use super::SAMPLES_PER_RESIDUAL;
+use super::antenna::Antenna;
 use super::axles::Axles;
 use super::grade::Grade;
 use super::press::{axles_n, own_n};
 use super::rolling::{self, wheel_kinematics};
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Headings and joints are looked at over so long before and after an instant, s: a receiver tells 0.3 deg.
-const HALF_S: f64 = 1.0;
+pub(super) const HALF_S: f64 = 1.0;
 /// Samples from one look at the joints to the next within that.
 const LOOK: usize = rolling::SAMPLES_PER_LOOK;
 /// The same, s.
@@ -47,12 +49,17 @@ const HOLDS: f64 = 0.6;
 ///
 /// No log says how far its tyres creep. What the turns of a whole run leave does.
 #[must_use]
-pub(super) fn yaw_rate_error_rad_s(s: &Signals, machine: &Machine, effects: &Effects) -> Samples {
+pub(super) fn yaw_rate_error_rad_s(
+    s: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+) -> Samples {
+    let effects = schedule.effects;
     let count = s.len / SAMPLES_PER_RESIDUAL;
     if s.headings.is_empty() || Grade::known(s).is_none() {
         return vec![f64::NAN; count];
     }
-    let said = said_by_joints(s, machine, effects.sensors.gnss_latency.delay_s);
+    let said = said_by_joints(s, machine, &Antenna::new(schedule));
     let at_s = |k: usize| (k as f64 + 0.5) * SAMPLES_PER_RESIDUAL as f64 * DT_S;
     let read = s.yaw_rates(|| (0..count).map(|k| rate_read(s, at_s(k))).collect());
     let turns = read.iter().enumerate().map(|(k, read)| Some([around(&said, at_s(k))?, (*read)?]));
@@ -83,9 +90,9 @@ fn share_turned<'a>(turns: impl Iterator<Item = &'a [f64; 2]>) -> f64 {
     if square > 0.0 { (product / square).clamp(least, most) } else { 1.0 }
 }
 
-/// Rate at which the front frame turns by joints and speed over ground, rad/s, at each look, by the clock of a
-/// receiver that is `late_s` behind; `NaN` where it is not told.
-fn said_by_joints(s: &Signals, machine: &Machine, late_s: f64) -> Samples {
+/// Rate at which the front frame turns by joints and speed over ground, rad/s, at each look, by the clock of
+/// the receiver; `NaN` where it is not told.
+fn said_by_joints(s: &Signals, machine: &Machine, antenna: &Antenna) -> Samples {
     let axles = Axles::new(machine);
     let parts = Parts::new(machine, &Effects::default());
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
@@ -93,27 +100,32 @@ fn said_by_joints(s: &Signals, machine: &Machine, late_s: f64) -> Samples {
     let looks = (s.len as f64 * DT_S / LOOK_S) as usize;
     let at = |k: usize| {
         let at_s = k as f64 * LOOK_S;
-        let ahead_m_s = ahead_m_s(s, at_s).filter(|ahead_m_s| ahead_m_s.abs() > ROLLING_M_S);
-        let i = ((at_s - late_s) / DT_S).round().max(0.0) as usize;
+        let ahead_m_s =
+            ahead_m_s(s, antenna, at_s).filter(|ahead_m_s| ahead_m_s.abs() > ROLLING_M_S);
+        let i = ((at_s - antenna.late_s(at_s)) / DT_S).round().max(0.0) as usize;
         let moves = kinematics.get(i / LOOK);
         let (Some(ahead_m_s), Some(moves)) = (ahead_m_s, moves) else { return f64::NAN };
         let load_n = PerWheel::from_fn(|w| s.cylinder_load_n[w][i]);
         let pressed_n = axles_n(&own_n, &load_n, &moves.pose);
         let [angle, rate] =
             [&s.joint_rad, &s.joint_rate_rad_s].map(|of| [0, 1].map(|joint: usize| of[joint][i]));
-        axles.rolling_under(pressed_n, angle, rate, ahead_m_s).turn_rad_s[0]
+        // Where the receiver gets later, its clock stands still.
+        let passes = antenna.passed_s([at_s - LOOK_S, at_s]) / LOOK_S;
+        passes * axles.rolling_under(pressed_n, angle, rate, ahead_m_s).turn_rad_s[0]
     };
     (0..looks).map(at).collect()
 }
 
 /// Speed over ground at `at_s` along the heading then, m/s, by the fixes around.
-fn ahead_m_s(s: &Signals, at_s: f64) -> Option<f64> {
+fn ahead_m_s(s: &Signals, antenna: &Antenna, at_s: f64) -> Option<f64> {
     let from = s.fixes.partition_point(|fix| fix[0] < at_s - FIXES_S);
     let to = s.fixes.partition_point(|fix| fix[0] <= at_s + FIXES_S).checked_sub(1)?;
     let ([t0, x0, y0], [t1, x1, y1]) = (*s.fixes.get(from)?, *s.fixes.get(to)?);
     let [heading, _] = s.heading_at(at_s).filter(|_| t1 - t0 > FIXES_S)?;
     let (sin, cos) = heading.sin_cos();
-    Some((cos * (x1 - x0) + sin * (y1 - y0)) / (t1 - t0))
+    let [jumped_m, _] = antenna.jumped_m([t0, t1]);
+    let passed_s = Some(antenna.passed_s([t0, t1])).filter(|passed_s| *passed_s > 0.0)?;
+    Some((cos * (x1 - x0) + sin * (y1 - y0) - jumped_m) / passed_s)
 }
 
 /// What `said` comes to around `at_s`: weighted as a line through evenly spaced headings weights their rates.
@@ -190,7 +202,7 @@ mod tests {
 
     /// Root mean square of what is told of a run, floors.
     fn floors(s: &Signals, effects: &Effects) -> f64 {
-        let told = yaw_rate_error_rad_s(s, &Machine::xt28(), effects).into_iter();
+        let told = yaw_rate_error_rad_s(s, &Machine::xt28(), effects.into()).into_iter();
         let told: Samples = told.filter(|error| error.is_finite()).collect();
         assert!(told.len() > 300, "{}", told.len());
         let square = told.iter().map(|error| error * error).sum::<f64>() / told.len() as f64;
@@ -238,7 +250,8 @@ mod tests {
     #[test]
     fn nothing_is_told_at_standstill_or_without_a_receiver() {
         let told = |s: &Signals| {
-            let errors = yaw_rate_error_rad_s(s, &Machine::xt28(), &Effects::default());
+            let effects = Effects::default();
+            let errors = yaw_rate_error_rad_s(s, &Machine::xt28(), (&effects).into());
             errors.iter().any(|error| error.is_finite())
         };
         assert!(!told(&still(20)));

@@ -24,11 +24,21 @@ impl Grade {
         }
     }
 
-    /// The same with the slope that `effects` believe in on top.
+    /// What is known with the slope that `effects` believe in on top.
     pub(super) fn believed(s: &Signals, effects: &Effects) -> Option<Self> {
-        let Self { rise: [east, north] } = Self::known(s)?;
-        let slope = &effects.slope;
-        Some(Self { rise: [east + slope.grade_x_rad.tan(), north + slope.grade_y_rad.tan()] })
+        Some(Self::known(s)?.with(effects))
+    }
+
+    /// The same with the slope that `effects` believe in on top.
+    pub(super) fn with(self, effects: &Effects) -> Self {
+        let ([east, north], slope) = (self.rise, &effects.slope);
+        Self { rise: [east + slope.grade_x_rad.tan(), north + slope.grade_y_rad.tan()] }
+    }
+
+    /// The same with `share` of it changed for `other`.
+    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
+        let rise = [0, 1].map(|k| self.rise[k] + share * (other.rise[k] - self.rise[k]));
+        Self { rise }
     }
 
     /// Rise ahead and to the left over a metre of the map, for who heads along a cosine and sine.

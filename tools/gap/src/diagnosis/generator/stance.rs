@@ -1,6 +1,7 @@
 //! How the machine stands on its six wheels: attitude from strokes, weight and its middle from loads,
 //! and whether every wheel either touches the ground or carries nothing.
 
+mod beside;
 mod carried;
 mod filter;
 mod followed;
@@ -9,7 +10,6 @@ mod instants;
 mod layout;
 mod lean;
 mod motion;
-mod mount;
 mod plane;
 mod strained;
 mod sway;
@@ -17,17 +17,16 @@ mod sway;
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::Parts;
 
-use super::grade::Grade;
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::signals::{Samples, Signals};
+use beside::Beside;
 use carried::Carrier;
 pub(super) use holds::{Held, Holds};
 use instants::{PRESSURE_FILTER_S, STANDING};
 use layout::{Layout, Reach};
 pub(super) use lean::antenna_leans_m;
-use mount::Mount;
 use plane::{Foot, Plane};
 
 /// Standing errors over a run, ten a second; `NaN` where nothing can be said. Attitude and weight are
@@ -116,7 +115,7 @@ pub(super) fn stance_errors(
 ) -> StanceErrors {
     let instants = s.instants(|| instants::instants(s, machine));
     let each =
-        Mount::each(schedule).into_iter().map(|m| errors(s, machine, schedule, &m, instants));
+        Beside::each(s, schedule).into_iter().map(|m| errors(s, machine, schedule, &m, instants));
     let errors = each.min_by(|a, b| tilted(a).total_cmp(&tilted(b))).unwrap_or_default();
     let of = |value: &dyn Fn(&Error) -> f64| {
         let standing: Samples = errors.iter().step_by(STANDING).map(value).collect();
@@ -139,12 +138,12 @@ pub(super) fn stance_errors(
     }
 }
 
-/// Errors of every instant, with the inertial unit on its `mount`.
+/// Errors of every instant, with the ground and the inertial unit's mount as `beside` has them.
 fn errors(
     s: &Signals,
     machine: &Machine,
     schedule: EffectSchedule<'_>,
-    mount: &Mount,
+    beside: &Beside,
     instants: &[Instant],
 ) -> Vec<Error> {
     let effects = schedule.effects;
@@ -152,15 +151,16 @@ fn errors(
     let mut carriers = INNER_SHARES.map(|inner_share| {
         PerWheel::from_fn(|w| Carrier::new(s, machine, schedule, &parts, w, inner_share))
     });
-    let ground = Grade::believed(s, effects);
     let carried = |carriers: &PerWheel<Carrier>, holds: Option<&Holds>, instant: &Instant| {
-        let Some(ground) = ground.filter(|_| instant.is_read && instant.rolls_freely) else {
+        let ground_rad = beside.ground_rad(instant.sample, instant.heading);
+        let Some(ground_rad) = ground_rad.filter(|_| instant.is_read && instant.rolls_freely)
+        else {
             return UNKNOWN;
         };
         let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
         let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
-        let mount_rad = mount.at_rad(instant.sample);
-        judge(instant, &arms, &parts, (machine, mount_rad), ground).unwrap_or(UNKNOWN)
+        let beside_rad = [ground_rad, beside.mount_rad(instant.sample)];
+        judge(instant, &arms, &parts, machine, beside_rad).unwrap_or(UNKNOWN)
     };
     strain(&mut carriers, |carriers| {
         let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
@@ -207,14 +207,14 @@ fn strain<'a>(
     carriers.iter_mut().for_each(|carriers| hold(carriers, &begins_n));
 }
 
-/// One instant, with where each wheel is and what it presses on the ground, and the roll and pitch by which the
-/// inertial unit's attitude is off.
+/// One instant, with where each wheel is and what it presses on the ground; how far the ground has the nose and the
+/// left side up; and the roll and pitch by which the inertial unit's mount has the attitude off.
 fn judge(
     instant: &Instant,
     arms: &PerWheel<(Reach, f64)>,
     parts: &Parts,
-    (machine, [off_roll_rad, off_pitch_rad]): (&Machine, [f64; 2]),
-    ground: Grade,
+    machine: &Machine,
+    [[nose_rad, left_rad], [off_roll_rad, off_pitch_rad]]: [[f64; 2]; 2],
 ) -> Option<Error> {
     let reaches = PerWheel::from_fn(|w| arms[w].0);
     let layout = Layout::new(parts, machine, instant.joint_rad, &reaches);
@@ -230,7 +230,6 @@ fn judge(
     let [about_ahead, about_left] = [plane.slope_x - off_pitch_rad, plane.slope_y + off_roll_rad];
     let roll = instant.attitude_rad[0] - off_roll_rad - instant.turned_rad[0] * about_ahead;
     let pitch = instant.attitude_rad[1] - off_pitch_rad - instant.turned_rad[1] * about_left;
-    let [nose_rad, left_rad] = ground.attitude_rad(instant.heading);
     let lean_rad = [plane.slope_y - left_rad - roll, nose_rad - plane.slope_x - pitch];
     if !instant.is_calm {
         return Some(Error { contact_m, lean_rad, ..UNKNOWN });

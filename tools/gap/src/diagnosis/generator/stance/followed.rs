@@ -4,6 +4,7 @@ use xt28_sim::Effects;
 
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::gauge::Sensing;
+use crate::diagnosis::generator::grade::Grade;
 use crate::diagnosis::signals::DT_S;
 
 /// Something that may change bit by bit.
@@ -19,6 +20,12 @@ impl Blend for f64 {
 }
 
 impl Blend for Sensing {
+    fn toward(self, other: &Self, share: f64) -> Self {
+        Self::toward(self, other, share)
+    }
+}
+
+impl Blend for Grade {
     fn toward(self, other: &Self, share: f64) -> Self {
         Self::toward(self, other, share)
     }

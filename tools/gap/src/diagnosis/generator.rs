@@ -242,7 +242,7 @@ impl Generator {
                 errors.map(|(signal, raw)| one(signal, raw)).to_vec()
             }
             Self::SteerEcu(j) => {
-                let error = controllers::steer_opening_error(s, machine, effects, j);
+                let error = controllers::steer_opening_error(s, machine, schedule, j);
                 vec![one(Signal::SteerOpening, error)]
             }
             Self::Drive => {

@@ -22,7 +22,7 @@ impl Antenna {
         };
         let first = f64::NEG_INFINITY;
         let since_s = if since_s > 0.0 { since_s } else { first };
-        let from_s = if from_s > 0.0 { from_s } else { first };
+        let from_s = if from_s > 0.0 { from_s.max(since_s) } else { since_s };
         Self { receivers: [of(first, &sound), of(since_s, before), of(from_s, effects)] }
     }
 

@@ -1,10 +1,11 @@
 //! The steering controllers on measured inputs: command and reading in, the opening they ask for out.
 
 use xt28_machine::Machine;
-use xt28_sim::Effects;
+use xt28_sim::effects::RearFollowerLag;
 
 use super::current_step::{STEER_STEP, middle_of_cut};
 use super::summed::best_sum;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
@@ -23,16 +24,16 @@ const HALVINGS: usize = 9;
 pub(super) fn steer_opening_error(
     signals: &Signals,
     machine: &Machine,
-    effects: &Effects,
+    schedule: EffectSchedule<'_>,
     joint: usize,
 ) -> Samples {
-    let [rounded, cut] = errors_of(signals, machine, effects, 0);
+    let [rounded, cut] = errors_of(signals, machine, schedule, 0);
     let squares = |errors: &Samples| -> f64 {
         errors.iter().filter(|error| !error.is_nan()).map(|error| error * error).sum()
     };
     let is_cut = squares(&cut) < squares(&rounded);
     let [rounded, cut] =
-        if joint == 0 { [rounded, cut] } else { errors_of(signals, machine, effects, joint) };
+        if joint == 0 { [rounded, cut] } else { errors_of(signals, machine, schedule, joint) };
     if is_cut { cut } else { rounded }
 }
 
@@ -40,10 +41,10 @@ pub(super) fn steer_opening_error(
 fn errors_of(
     signals: &Signals,
     machine: &Machine,
-    effects: &Effects,
+    schedule: EffectSchedule<'_>,
     joint: usize,
 ) -> [Samples; 2] {
-    let asked = steer_opening_asked(signals, machine, effects, joint);
+    let asked = steer_opening_asked(signals, machine, schedule, joint);
     let logged = &signals.steer_opening[joint];
     let cut: Samples = logged.iter().map(|opening| middle_of_cut(*opening, STEER_STEP)).collect();
     [logged, &cut].map(|meant| error_of(signals, machine, [&asked, meant]))
@@ -73,15 +74,16 @@ fn error_of(signals: &Signals, machine: &Machine, [asked, meant]: [&Samples; 2])
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint at every sample.
 ///
 /// What the PI had summed up before the log began is in no log of a machine that was driving then: the
-/// sum that fits best is taken. A machine that stands has none.
+/// sum that fits best is taken. A machine that stands has none. A follower that becomes another within the run has
+/// summed up the errors of the one before.
 #[must_use]
 pub(super) fn steer_opening_asked(
     signals: &Signals,
     machine: &Machine,
-    effects: &Effects,
+    schedule: EffectSchedule<'_>,
     joint: usize,
 ) -> Samples {
-    let pi = Pi::new(signals, machine, effects, joint);
+    let pi = Pi::new(signals, machine, schedule, joint);
     let stands = (0..signals.len).find(|i| pi.error_deg[*i].is_none());
     let driving = stands.unwrap_or(signals.len);
     pi.asked(signals.len, pi.best_sum(driving)).collect()
@@ -98,12 +100,21 @@ struct Pi<'a> {
 }
 
 impl<'a> Pi<'a> {
-    fn new(signals: &'a Signals, machine: &Machine, effects: &Effects, joint: usize) -> Self {
-        let (a, gain) = (&machine.articulation, effects.steering.gain);
-        let follower = effects.steering.rear_follower;
+    fn new(
+        signals: &'a Signals,
+        machine: &Machine,
+        schedule: EffectSchedule<'_>,
+        joint: usize,
+    ) -> Self {
+        let (a, gain) = (&machine.articulation, schedule.effects.steering.gain);
         let deg = |rad: f64| rad.to_degrees();
         let mut followed_deg = signals.joint_rad[0].first().map_or(0.0, |rad| deg(*rad));
         let error_deg = |i: usize| {
+            let follower = match i as f64 * DT_S {
+                at_s if at_s < schedule.since_s => RearFollowerLag::default(),
+                at_s if at_s < schedule.from_s => schedule.before.steering.rear_follower,
+                _ => schedule.effects.steering.rear_follower,
+            };
             let front_deg = deg(signals.joint_rad[0][i]);
             followed_deg = if follower.time_constant_s > 0.0 {
                 front_deg + (followed_deg - front_deg) * (-DT_S / follower.time_constant_s).exp()
@@ -153,6 +164,7 @@ impl<'a> Pi<'a> {
 #[cfg(test)]
 mod tests {
     use xt28_machine::Wheel;
+    use xt28_sim::Effects;
 
     use super::super::still::still;
     use super::*;
@@ -173,7 +185,7 @@ mod tests {
             s.target_joint_rad[i] = front_rad(t + 1.0);
         }
         for joint in [0, 1] {
-            let asked = steer_opening_asked(&s, machine, &late(0.5), joint);
+            let asked = steer_opening_asked(&s, machine, (&late(0.5)).into(), joint);
             s.steer_opening[joint] =
                 asked.iter().map(|asked| (asked / STEER_STEP).round() * STEER_STEP).collect();
         }
@@ -192,7 +204,7 @@ mod tests {
         let machine = Machine::xt28();
         let s = turning(&machine);
         let squares = |time_constant_s: f64| -> f64 {
-            let errors = steer_opening_error(&s, &machine, &late(time_constant_s), 1);
+            let errors = steer_opening_error(&s, &machine, (&late(time_constant_s)).into(), 1);
             errors.iter().filter(|error| !error.is_nan()).map(|error| error * error).sum()
         };
         let squares = [0.38, 0.44, 0.5].map(squares);
@@ -222,5 +234,22 @@ mod tests {
         let [none, much] = [from(0.0), from(30.0)];
         assert!(none[300] < much[300]);
         assert_eq!(none[600..], much[600..]);
+    }
+
+    /// A follower that turns half as far from 10 s on: what it had summed up until then is that of a sound one.
+    #[test]
+    fn a_follower_that_becomes_another_has_summed_up_what_was_before() {
+        let (machine, sound) = (Machine::xt28(), Effects::default());
+        let (mut s, mut half) = (turning(&machine), Effects::default());
+        half.steering.rear_follower.ratio_factor = 0.5;
+        // It stands as the log begins, so that nothing is summed up.
+        Wheel::ALL.into_iter().for_each(|w| s.wheel_speed_rad_s[w][..100].fill(0.0));
+        let late = EffectSchedule { before: &sound, from_s: 10.0, effects: &half, since_s: 0.0 };
+        s.steer_opening[1] = steer_opening_asked(&s, &machine, late, 1);
+        let asked = |schedule| steer_opening_asked(&s, &machine, schedule, 1);
+        let [always, never] = [asked((&half).into()), asked((&sound).into())];
+        assert!(s.steer_opening[1][..999] == never[..999]);
+        let parts = |other: &Samples| (s.steer_opening[1][1100] - other[1100]).abs();
+        assert!(parts(&never) > 0.01 && parts(&always) > 0.01);
     }
 }

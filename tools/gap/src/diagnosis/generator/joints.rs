@@ -115,7 +115,7 @@ fn untouched(angle_rad: &[f64], openings: &[f64]) -> usize {
 
 /// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.
 fn finer_openings(signals: &Signals, machine: &Machine, joint: usize) -> Samples {
-    let asked = steer_opening_asked(signals, machine, &Effects::default(), joint);
+    let asked = steer_opening_asked(signals, machine, (&Effects::default()).into(), joint);
     let within = |(asked, logged): (&f64, &f64)| within_step(*asked, *logged, STEER_STEP);
     asked.iter().zip(&signals.steer_opening[joint]).map(within).collect()
 }

@@ -11,6 +11,7 @@
 
 mod agreement;
 mod belief;
+mod blend;
 mod candidates;
 pub mod details;
 mod diagnose;

@@ -14,7 +14,7 @@ from .body import RATE_HZ, Body, heading
 from .drive import Drive, Joints, pump_bar
 from .ecu import TICK_S, ArmEcu, DriveEcu
 from .scripts import RAMP, Script
-from .sensing import Sensors, level_gravity, specific_force
+from .sensing import Sensors, specific_force
 from .truth import N, Truth
 from .wire import Wire
 
@@ -46,7 +46,6 @@ class Run:
         self._joints, self._drive = Joints(machine, truth, dt), Drive(machine, truth, dt)
         self._arm_ecu, self._drive_ecu = ArmEcu(truth), DriveEcu(machine, truth)
         self._sensors, self._wire = Sensors(machine, truth, random), Wire(dbc)
-        self._gravity = level_gravity(truth.ground.slope_along, truth.ground.slope_across)
         # The ECU reckons wheel forces with a cylinder that is 30 mm shorter (facts 1.4).
         self._told = Linkage(SimpleNamespace(**vars(machine.arms) | {"closed_length_m": 0.82}))
         self._heard = script.at(0.0)
@@ -73,9 +72,6 @@ class Run:
     def _tick(self, now_s: float, tick: int) -> None:
         if self._set_in(self._truth, now_s):
             self.body.become(self._truth)
-            self._gravity = level_gravity(
-                self._truth.ground.slope_along, self._truth.ground.slope_across
-            )
         self._command(now_s, tick)
         for step in range(STEPS):
             if step == round(ARM_S * RATE_HZ):
@@ -140,7 +136,7 @@ class Run:
         ecu = self._arm_ecu
         stroke_m, _, _ = self.body.strokes()
         turn, _, velocity, rate = self.body.front((0.0, 0.0, 1.0))
-        felt = specific_force((velocity - self._before) / TICK_S, turn, self._gravity)
+        felt = specific_force((velocity - self._before) / TICK_S, turn, self.body.model.opt.gravity)
         self._before = velocity
         strokes = self._sensors.strokes_mm(stroke_m)
         pressures = self._sensors.pressures_kpa(self._arms.oil_n)

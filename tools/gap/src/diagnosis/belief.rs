@@ -39,6 +39,36 @@ pub(super) struct EffectSchedule<'e> {
     pub(super) since_s: f64,
 }
 
+/// Something that effects decide, over one run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scheduled<T> {
+    /// What a sound machine has before the base sets in, what the base has, and what the belief has.
+    sound: T,
+    before: T,
+    is: T,
+    since_s: f64,
+    from_s: f64,
+}
+
+impl EffectSchedule<'_> {
+    /// What `of` makes of the effects that hold when.
+    pub(super) fn of<T>(&self, of: impl Fn(&Effects) -> T) -> Scheduled<T> {
+        let (sound, before, is) = (of(&Effects::default()), of(self.before), of(self.effects));
+        Scheduled { sound, before, is, since_s: self.since_s, from_s: self.from_s }
+    }
+}
+
+impl<T> Scheduled<T> {
+    /// At an instant of the run, s.
+    pub(super) fn at(&self, at_s: f64) -> &T {
+        match at_s.max(0.0) {
+            at_s if at_s < self.since_s => &self.sound,
+            at_s if at_s < self.from_s => &self.before,
+            _ => &self.is,
+        }
+    }
+}
+
 impl<'e> From<&'e Effects> for EffectSchedule<'e> {
     fn from(effects: &'e Effects) -> Self {
         Self { before: effects, from_s: 0.0, effects, since_s: 0.0 }

@@ -3,6 +3,7 @@
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::effects::WheelEffects;
 
+use super::blend::Blend;
 use super::signals::Signals;
 
 /// The sensors of one cylinder, as believed.
@@ -25,15 +26,6 @@ impl Gauge {
             bias_n: sensors.pressure_bias.bias_pa * area_bore_m2,
             bore: scale.factor,
             by_rod: 1.0 / scale.factor - 1.0 / scale.rod_factor(),
-        }
-    }
-
-    /// The same with `share` of it changed for `other`.
-    fn toward(self, other: &Self, share: f64) -> Self {
-        Self {
-            bias_n: between(self.bias_n, other.bias_n, share),
-            bore: between(self.bore, other.bore, share),
-            by_rod: between(self.by_rod, other.by_rod, share),
         }
     }
 
@@ -72,19 +64,26 @@ impl Sensing {
     pub(super) fn stroke_m(&self, reading_m: f64) -> f64 {
         (reading_m - self.stroke_bias_m) / self.stroke_scale
     }
+}
 
-    /// The same with `share` of it changed for `other`, as a filtered reading is while it follows a jump.
-    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
+impl Blend for Gauge {
+    fn toward(self, other: &Self, share: f64) -> Self {
         Self {
-            gauge: self.gauge.toward(&other.gauge, share),
-            stroke_bias_m: between(self.stroke_bias_m, other.stroke_bias_m, share),
-            stroke_scale: between(self.stroke_scale, other.stroke_scale, share),
+            bias_n: self.bias_n.toward(&other.bias_n, share),
+            bore: self.bore.toward(&other.bore, share),
+            by_rod: self.by_rod.toward(&other.by_rod, share),
         }
     }
 }
 
-fn between(own: f64, other: f64, share: f64) -> f64 {
-    own + share * (other - own)
+impl Blend for Sensing {
+    fn toward(self, other: &Self, share: f64) -> Self {
+        Self {
+            gauge: self.gauge.toward(&other.gauge, share),
+            stroke_bias_m: self.stroke_bias_m.toward(&other.stroke_bias_m, share),
+            stroke_scale: self.stroke_scale.toward(&other.stroke_scale, share),
+        }
+    }
 }
 
 /// Force against the rod that the sensor of its chamber shows at sample `i`, N; the return line's where no

@@ -1,44 +1,34 @@
 //! Where the receiver's antenna was, and when, that a fix tells.
 
-use xt28_sim::Effects;
 use xt28_sim::effects::GnssLeverArm;
 
-use crate::diagnosis::belief::EffectSchedule;
+use crate::diagnosis::belief::{EffectSchedule, Scheduled};
 
 /// The receiver as believed over a run.
 pub(super) struct Antenna {
-    /// From when on, s, a receiver is so late, s, with its antenna so far from where it is believed to be.
-    receivers: [(f64, f64, GnssLeverArm); 3],
+    /// How late it is, s.
+    late_s: Scheduled<f64>,
+    /// How far its antenna is from where it is believed to be.
+    lever: Scheduled<GnssLeverArm>,
 }
 
 impl Antenna {
     /// The receiver over a schedule of effects.
     pub(super) fn new(schedule: EffectSchedule<'_>) -> Self {
-        let EffectSchedule { before, from_s, effects, since_s } = schedule;
-        let sound = Effects::default();
-        let of = |at_s: f64, effects: &Effects| {
-            let sensors = &effects.sensors;
-            (at_s, sensors.gnss_latency.delay_s, sensors.gnss_lever_arm)
-        };
-        let first = f64::NEG_INFINITY;
-        let since_s = if since_s > 0.0 { since_s } else { first };
-        let from_s = if from_s > 0.0 { from_s.max(since_s) } else { since_s };
-        Self { receivers: [of(first, &sound), of(since_s, before), of(from_s, effects)] }
-    }
-
-    fn at(&self, at_s: f64) -> &(f64, f64, GnssLeverArm) {
-        let [sound, before, is] = &self.receivers;
-        [is, before].into_iter().find(|(from_s, ..)| at_s >= *from_s).unwrap_or(sound)
+        Self {
+            late_s: schedule.of(|effects| effects.sensors.gnss_latency.delay_s),
+            lever: schedule.of(|effects| effects.sensors.gnss_lever_arm),
+        }
     }
 
     /// How late a fix at `at_s` is, s.
     pub(super) fn late_s(&self, at_s: f64) -> f64 {
-        self.at(at_s).1
+        *self.late_s.at(at_s)
     }
 
     /// How far the antenna is ahead and to the left of where it is believed to be, by a fix at `at_s`, m.
     pub(super) fn lever_m(&self, at_s: f64) -> [f64; 2] {
-        let lever = self.at(at_s).2;
+        let lever = self.lever.at(at_s);
         [lever.x_m, lever.y_m]
     }
 
@@ -57,6 +47,8 @@ impl Antenna {
 
 #[cfg(test)]
 mod tests {
+    use xt28_sim::Effects;
+
     use super::*;
 
     #[test]

@@ -1,7 +1,6 @@
 //! The steering controllers on measured inputs: command and reading in, the opening they ask for out.
 
 use xt28_machine::Machine;
-use xt28_sim::effects::RearFollowerLag;
 
 use super::current_step::{STEER_STEP, middle_of_cut};
 use super::summed::best_sum;
@@ -109,12 +108,9 @@ impl<'a> Pi<'a> {
         let (a, gain) = (&machine.articulation, schedule.effects.steering.gain);
         let deg = |rad: f64| rad.to_degrees();
         let mut followed_deg = signals.joint_rad[0].first().map_or(0.0, |rad| deg(*rad));
+        let followers = schedule.of(|effects| effects.steering.rear_follower);
         let error_deg = |i: usize| {
-            let follower = match i as f64 * DT_S {
-                at_s if at_s < schedule.since_s => RearFollowerLag::default(),
-                at_s if at_s < schedule.from_s => schedule.before.steering.rear_follower,
-                _ => schedule.effects.steering.rear_follower,
-            };
+            let follower = followers.at(i as f64 * DT_S);
             let front_deg = deg(signals.joint_rad[0][i]);
             followed_deg = if follower.time_constant_s > 0.0 {
                 front_deg + (followed_deg - front_deg) * (-DT_S / follower.time_constant_s).exp()

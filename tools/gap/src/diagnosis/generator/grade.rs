@@ -3,6 +3,7 @@
 use xt28_machine::Machine;
 use xt28_sim::{Effects, Terrain};
 
+use crate::diagnosis::blend::Blend;
 use crate::diagnosis::signals::{DT_S, Signals};
 
 /// A plane that wheels roll on.
@@ -35,12 +36,6 @@ impl Grade {
         Self { rise: [east + slope.grade_x_rad.tan(), north + slope.grade_y_rad.tan()] }
     }
 
-    /// The same with `share` of it changed for `other`.
-    pub(super) fn toward(self, other: &Self, share: f64) -> Self {
-        let rise = [0, 1].map(|k| self.rise[k] + share * (other.rise[k] - self.rise[k]));
-        Self { rise }
-    }
-
     /// Rise ahead and to the left over a metre of the map, for who heads along a cosine and sine.
     fn rises(&self, [cos, sin]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.rise;
@@ -64,6 +59,12 @@ impl Grade {
     pub(super) fn on_map(&self, heading_rad: f64) -> f64 {
         let [ahead, _] = self.rises(along(heading_rad));
         1.0 / 1.0_f64.hypot(ahead)
+    }
+}
+
+impl Blend for Grade {
+    fn toward(self, other: &Self, share: f64) -> Self {
+        Self { rise: [0, 1].map(|k| self.rise[k].toward(&other.rise[k], share)) }
     }
 }
 

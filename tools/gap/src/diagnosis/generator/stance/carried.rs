@@ -1,7 +1,6 @@
 //! What each wheel carries, from the pressures of its cylinder.
 
 use xt28_machine::{Machine, Wheel};
-use xt28_sim::effects::SealStiction;
 use xt28_sim::{Effects, Parts};
 
 use super::followed::Followed;
@@ -140,24 +139,20 @@ impl Moments {
 /// The seals on the measured motion, each law from when it holds. What one has in common with the law before it
 /// carries on; seals that begin to stick hold nothing until the rod moves.
 fn seal(s: &Signals, schedule: EffectSchedule<'_>, wheel: Wheel) -> Seal {
-    let EffectSchedule { before, from_s, effects, since_s } = schedule;
-    let law = effects.arms[wheel].stiction;
+    let effects = schedule.effects;
+    let law = &effects.arms[wheel].stiction;
     let most_n = law.coulomb_n + law.stribeck_n;
     if most_n == 0.0 {
         return Seal::default();
     }
-    let law_at = |sample: usize| match sample as f64 * DT_S {
-        at_s if at_s < since_s => SealStiction::default(),
-        at_s if at_s < from_s => before.arms[wheel].stiction,
-        _ => law,
-    };
+    let laws = schedule.of(|effects| effects.arms[wheel].stiction);
     let scale = effects.wheels[wheel].stroke_scale.factor;
     let (mut friction_n, mut left) = (0.0, 1.0);
     let mut last_m = None;
     let step = |(sample, stroke_m): (usize, f64)| {
         let travel_m = stroke_m - last_m.replace(stroke_m).unwrap_or(stroke_m);
         let rate_m_s = travel_m / DT_S / scale;
-        let law = law_at(sample);
+        let law = laws.at(sample as f64 * DT_S);
         friction_n = law.step(friction_n, rate_m_s, DT_S);
         // What it is where they were strained less what it is where they were not, as a share.
         left *= law.ahead(1.0, rate_m_s, DT_S)[0];

@@ -3,33 +3,8 @@
 use xt28_sim::Effects;
 
 use crate::diagnosis::belief::EffectSchedule;
-use crate::diagnosis::gauge::Sensing;
-use crate::diagnosis::generator::grade::Grade;
+use crate::diagnosis::blend::Blend;
 use crate::diagnosis::signals::DT_S;
-
-/// Something that may change bit by bit.
-pub(super) trait Blend: Copy {
-    /// The same with `share` of it changed for `other`.
-    fn toward(self, other: &Self, share: f64) -> Self;
-}
-
-impl Blend for f64 {
-    fn toward(self, other: &Self, share: f64) -> Self {
-        self + share * (other - self)
-    }
-}
-
-impl Blend for Sensing {
-    fn toward(self, other: &Self, share: f64) -> Self {
-        Self::toward(self, other, share)
-    }
-}
-
-impl Blend for Grade {
-    fn toward(self, other: &Self, share: f64) -> Self {
-        Self::toward(self, other, share)
-    }
-}
 
 /// Something believed, and what it was until instants of a run.
 #[derive(Clone, Copy)]

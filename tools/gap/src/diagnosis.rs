@@ -10,6 +10,7 @@
 //! | what an effect would explain beyond that | [`Hypothesis`] |
 
 mod agreement;
+mod beginning;
 mod belief;
 mod blend;
 mod candidates;
@@ -31,11 +32,13 @@ mod knob;
 mod likely_wheels;
 mod next_drive;
 mod noise;
+mod onset;
 mod overlap;
 mod scales;
 mod search;
 mod signals;
 mod stands;
+mod two_looks;
 mod unshrunk;
 mod vague_laws;
 mod verdict;
@@ -45,6 +48,7 @@ pub use agreement::{
     SwappedChambers, WheelScale, ensure_agreeing, swapped_wheels,
 };
 pub(crate) use agreement::{ensure_motions_agreeing, ensure_pressures_agreeing};
+pub use beginning::Beginning;
 pub use belief::{Base, Belief};
 pub use candidates::Candidate;
 pub use details::Details;
@@ -63,12 +67,13 @@ pub use knob::{Knob, TOLERANCES, Tolerance};
 pub(crate) use next_drive::scripted_drive;
 pub use next_drive::{Manoeuvre, next_drive, untested_drive};
 pub use noise::with_noise_of;
+pub use onset::Onset;
 pub use scales::{Chances, Grounds, Scales};
 pub use search::search;
 pub use signals::{DT_S, Samples, Signals};
 pub(crate) use signals::{needed, sampled};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{
-    Beginning, Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot,
-    Together, Verdict,
+    Cause, Diagnosis, Drive, Estimate, Next, NotTestable, Place, ShareOf, Shrink, Spot, Together,
+    Verdict,
 };

@@ -37,6 +37,8 @@ pub struct FieldLog {
     faults: Vec<LogFault>,
     frames: u64,
     duration_s: f64,
+    /// Stamp of its first frame, s; none where nobody recorded it.
+    begun_s: Option<f64>,
     /// Whether frames of every message, whoever sent it, are missing alike.
     is_thinned: bool,
 }
@@ -100,7 +102,8 @@ impl FieldLog {
             self.faults.iter().filter_map(|fault| fault.within(span_s, share)).collect();
         let [before, lost] = [&self.faults, &faults].map(|faults| losses(faults));
         let is_thinned = self.is_thinned && lost.len() == before.len() && is_thinned(&lost);
-        Self { series: series.collect(), duration_s, faults, is_thinned, ..self }
+        let begun_s = self.begun_s.map(|begun_s| begun_s + span_s[0]);
+        Self { series: series.collect(), duration_s, begun_s, faults, is_thinned, ..self }
     }
 
     /// The same without a word on what `messages` lost, where nothing is read of them.
@@ -210,7 +213,8 @@ impl FieldLog {
         duration_s: f64,
     ) -> Self {
         let faults = Vec::new();
-        Self { name: name.into(), series, faults, frames: 0, duration_s, is_thinned: false }
+        let (frames, begun_s, is_thinned) = (0, None, false);
+        Self { name: name.into(), series, faults, frames, duration_s, begun_s, is_thinned }
     }
 
     /// The same log with other samples, as it would be had its sensors read something else.
@@ -265,6 +269,12 @@ impl FieldLog {
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
+    }
+
+    /// What the first frame was stamped with, s; none where nobody recorded the log.
+    #[must_use]
+    pub fn begun_s(&self) -> Option<f64> {
+        self.begun_s
     }
 
     /// Time from the first frame to the last, s.

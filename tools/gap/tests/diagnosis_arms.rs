@@ -3,7 +3,9 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use xt28_gap::diagnosis::{Belief, Evidence, Fit, Generator, Hypothesis, Knob, Signals, search};
+use xt28_gap::diagnosis::{
+    Belief, Evidence, Fit, Generator, Hypothesis, Knob, Onset, Signals, search,
+};
 use xt28_gap::{About, Channel, Decoder, FieldLog, Mapping, Replay, Series, Terrain};
 use xt28_machine::{Axle, Machine, Wheel};
 use xt28_sim::effects::{Effect, Overlay, Scope, find};
@@ -153,9 +155,10 @@ fn found_bias(signals: Signals, from_s: f64) -> (f64, f64) {
     let evidence = Evidence::watching(generators, &runs, &machine, none, &Knob::tolerances());
     let effect = find("pressure-bias").unwrap();
     let hypothesis = Hypothesis { effect, scope: Scope::Wheel(Wheel::Ml) };
-    let fit = hypothesis.refit(&evidence, from_s, &[-1.0e5]);
+    let onset = Onset::in_every_run(from_s);
+    let fit = hypothesis.refit(&evidence, onset, &[-1.0e5]);
     let effects = hypothesis.applied(&Effects::default(), &fit.values);
-    let left = evidence.left(Belief { effects: &effects, from_s });
+    let left = evidence.left(Belief { effects: &effects, onset });
     (fit.values[0], left[0].square.sqrt())
 }
 

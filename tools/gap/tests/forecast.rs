@@ -3,7 +3,7 @@
 use toml::Table;
 use xt28_gap::diagnosis::{
     Cause, Diagnosis, Estimate, Evidence, FieldRun, Fit, Hypothesis, Inquiry, Knob, Manoeuvre,
-    Signals, Verdict, next_drive,
+    Onset, Signals, Verdict, next_drive,
 };
 use xt28_machine::Machine;
 use xt28_sim::Effects;
@@ -48,7 +48,7 @@ fn fits(runs: Vec<FieldRun>, rivals: [(Hypothesis, f64); 2]) -> ([Fit; 2], Inqui
     let signals: Vec<Signals> = inquiry.runs.iter().map(|run| run.signals.clone()).collect();
     let knobs = Knob::of(&inquiry.catalogue);
     let evidence = Evidence::new(&signals, &inquiry.machine, Effects::default(), &knobs);
-    (rivals.map(|(rival, from)| rival.refit(&evidence, 0.0, &[from])), inquiry)
+    (rivals.map(|(rival, from)| rival.refit(&evidence, Onset::ALWAYS, &[from])), inquiry)
 }
 
 fn cause(fit: &Fit, probability: f64) -> Cause {

@@ -3,7 +3,7 @@
 
 mod own_logs;
 
-use xt28_gap::diagnosis::{Evidence, Hypothesis, Inquiry, Knob};
+use xt28_gap::diagnosis::{Evidence, Hypothesis, Inquiry, Knob, Onset};
 use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 
@@ -24,7 +24,7 @@ fn a_tolerance_of_a_soft_tyre_is_one_of_it() {
     let evidence = Evidence::new(&runs, &inquiry.machine, inquiry.believed.clone(), &tolerances);
     for hypothesis in Hypothesis::of(&inquiry.catalogue) {
         let neutral: Vec<f64> = hypothesis.effect.parameters.iter().map(|p| p.neutral).collect();
-        let gain = hypothesis.gain(&evidence, 0.0, &neutral);
+        let gain = hypothesis.gain(&evidence, Onset::ALWAYS, &neutral);
         assert!(gain.abs() < 1e-6, "{} {}: {gain}", hypothesis.effect.name, hypothesis.scope);
     }
 }

@@ -26,6 +26,9 @@ pub(crate) struct ThirdMake {
     /// Faults set in 8 to 14 s into every run, where they are not built in
     #[arg(long)]
     late: bool,
+    /// Faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay
+    #[arg(long, conflicts_with = "late")]
+    once: bool,
 }
 
 impl ThirdMake {
@@ -41,6 +44,9 @@ impl ThirdMake {
         }
         if self.late {
             command.arg("--late");
+        }
+        if self.once {
+            command.arg("--once");
         }
         let status = command.arg(format!("--seed={}", self.seed)).status()?;
         Ok(u8::from(!status.success()))

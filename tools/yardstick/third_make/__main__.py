@@ -8,7 +8,7 @@ import numpy as np
 
 from xt28_mujoco.machine import Machine
 
-from .faults import NAMES, draw
+from .faults import NAMES, draw, once
 from .run import Run
 from .scripts import RAMP, drives
 from .truth import Truth, tolerances
@@ -16,6 +16,8 @@ from .wire import logged_database
 
 BEGIN_S = 1.76e9
 BETWEEN_S = 900.0
+# Beside the runs' numbers, which draw their noise.
+ONCE_STREAM = 1000
 
 
 def about(name: str, scripts) -> str:
@@ -24,7 +26,7 @@ def about(name: str, scripts) -> str:
     for number, script in enumerate(scripts, 1):
         lines += [
             "\n[[run]]",
-            f'file = "run-{number}-{script.name}.log.gz"',
+            f'file = "{file_of(number, script)}"',
             f'scenario = "{script.name}"',
             f"seconds = {script.seconds}",
             f'terrain = "{"ramp" if script.ramp else "flat"}"',
@@ -36,7 +38,12 @@ def about(name: str, scripts) -> str:
     return "\n".join(lines) + "\n"
 
 
-def answer(name: str, seed: int, kind: str, faults) -> str:
+def file_of(number: int, script) -> str:
+    """The name of a run's log."""
+    return f"run-{number}-{script.name}.log.gz"
+
+
+def answer(name: str, seed: int, kind: str, faults, scripts) -> str:
     """What is wrong."""
     lines = [f'case = "{name}"', f"seed = {seed}", f'kind = "{kind}"']
     for fault in faults:
@@ -48,6 +55,11 @@ def answer(name: str, seed: int, kind: str, faults) -> str:
             f'scope = "{fault.scope}"',
             f'target_signal = "{fault.signal}"',
             f"start_s = {fault.start_s}",
+        ]
+        if fault.start_run is not None:
+            run = file_of(fault.start_run, scripts[fault.start_run - 1])
+            lines.append(f'start_run = "{run}"')
+        lines += [
             f"parameters = {{ {numbers} }}",
         ]
     return "\n".join(lines) + "\n"
@@ -60,6 +72,10 @@ def write(args, seed: int, causes: list[str]) -> str:
     truth.drive.in_bearings = args.bearings
     tolerances(truth, random)
     faults = [draw(cause, random, args.late) for cause in causes]
+    if args.once:
+        # Drawn apart, so that the machine and its drives are those of the same seed without.
+        when = np.random.default_rng((seed, ONCE_STREAM))
+        faults = [once(fault, when) for fault in faults]
     kind = ("null", "single", "pair")[len(faults)]
     if not all(fault.known for fault in faults):
         kind = "unknown"
@@ -70,13 +86,14 @@ def write(args, seed: int, causes: list[str]) -> str:
     scripts = drives(random)
     for number, script in enumerate(scripts, 1):
         noise = np.random.default_rng((seed, number))
-        log = Run(machine, args.dbc, deepcopy(truth), faults, script, noise).log(
+        there = [fault for fault in (fault.in_run(number) for fault in faults) if fault]
+        log = Run(machine, args.dbc, deepcopy(truth), there, script, noise).log(
             BEGIN_S + BETWEEN_S * number
         )
-        (folder / f"run-{number}-{script.name}.log.gz").write_bytes(log)
+        (folder / file_of(number, script)).write_bytes(log)
     (folder / "about.toml").write_text(about(name, scripts), encoding="utf-8")
     (folder / "xt28-field.dbc").write_text(logged_database(args.dbc), encoding="utf-8")
-    (args.out / "answers" / f"{name}.toml").write_text(answer(name, seed, kind, faults))
+    (args.out / "answers" / f"{name}.toml").write_text(answer(name, seed, kind, faults, scripts))
     return name
 
 
@@ -98,6 +115,11 @@ def main() -> None:
         "--late",
         action="store_true",
         help="faults set in 8 to 14 s into every run, where they are not built in",
+    )
+    parser.add_argument(
+        "--once",
+        action="store_true",
+        help="faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay",
     )
     parser.add_argument(
         "causes",

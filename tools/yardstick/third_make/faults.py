@@ -1,7 +1,7 @@
 """Everything that can be wrong with a machine of this make: `faults.toml`, drawn and put in."""
 
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +23,8 @@ TABLE = tomllib.loads(Path(__file__).with_name("faults.toml").read_text(encoding
 NAMES = tuple(TABLE)
 # When a fault that sets in underway does, s.
 LATE_S = (8.0, 14.0)
+# Runs in which a fault that sets in once does.
+ONCE_IN = (2, 3, 4)
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class Fault:
     sizes: dict[str, float]
     # When it sets in, in every run; before the log begins where it is zero.
     start_s: float = 0.0
+    # The only run in which it does so, counted from one, and is there in all later ones; none where it is every run.
+    start_run: int | None = None
 
     @property
     def known(self) -> bool:
@@ -49,6 +53,12 @@ class Fault:
     def signal(self) -> str:
         """The signal that it shows in first."""
         return TABLE[self.name]["signal"]
+
+    def in_run(self, number: int) -> "Fault | None":
+        """What it is in one run: not there before the one in which it sets in for good."""
+        if self.start_run is None or number == self.start_run:
+            return self
+        return replace(self, start_s=0.0) if number > self.start_run else None
 
     def put_in(self, truth: Truth) -> None:
         """Makes it so."""
@@ -81,3 +91,12 @@ def draw(cause: str, random: np.random.Generator, late: bool) -> Fault:
     if not late or TABLE[name].get("built_in", False):
         return Fault(name, scope, sizes)
     return Fault(name, scope, sizes, round(float(random.uniform(*LATE_S)), 1))
+
+
+def once(fault: Fault, random: np.random.Generator) -> Fault:
+    """The same setting in once, before one run of the day or within it."""
+    if TABLE[fault.name].get("built_in", False):
+        return fault
+    within_s = round(float(random.uniform(*LATE_S)), 1)
+    start_s = float(random.choice((0.0, within_s)))
+    return replace(fault, start_s=start_s, start_run=int(random.choice(ONCE_IN)))

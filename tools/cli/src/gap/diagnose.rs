@@ -211,11 +211,8 @@ impl Diagnose {
         let overlay = self.overlay.as_ref().map(|path| {
             let head = page::headline(diagnosis).replace('\n', " ");
             let late = diagnosis.stood_by().filter_map(|cause| {
-                let at_s = cause.begins.as_ref()?.at_s;
-                let name = cause.effect.name;
-                Some(format!(
-                    "# {name} begins {at_s:.1} s into the runs; here it is there from the start.\n"
-                ))
+                let (name, begins) = (cause.effect.name, cause.begins.as_ref()?);
+                Some(format!("# {name} begins {begins}; here it is there from the start.\n"))
             });
             let late: String = late.collect();
             Ok((path, format!("# {head}\n{late}\n{}", diagnosis.overlay().to_toml())))

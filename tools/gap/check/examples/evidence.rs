@@ -13,7 +13,7 @@
 use std::path::PathBuf;
 
 use xt28_gap::diagnosis::{
-    Candidate, Echo, Evidence, Findings, Knob, SignalFindings, Signals, Uneven,
+    Beginning, Candidate, Echo, Evidence, Findings, Knob, SignalFindings, Signals, Uneven,
 };
 use xt28_gap_check::Source;
 use xt28_sim::Effects;
@@ -115,6 +115,6 @@ fn line(cause: &Candidate) -> String {
         fit.hypothesis.effect.name,
         fit.hypothesis.scope,
         values.join(", "),
-        if fit.from_s > 0.0 { format!(" from {:.1} s", fit.from_s) } else { String::new() },
+        Beginning::of(fit.onset).map_or_else(String::new, |begins| format!(" begins {begins}")),
     )
 }

@@ -1,6 +1,6 @@
 //! How far the gap shrinks for who knows the cause: what a diagnosis can reach at best.
 
-use xt28_gap::diagnosis::{Beginning, Cause, Estimate, HowFar, Shrink};
+use xt28_gap::diagnosis::{Beginning, Cause, Estimate, HowFar, Inquiry, Onset, Shrink};
 
 use crate::CheckError;
 use crate::source::Source;
@@ -16,12 +16,12 @@ pub(crate) fn oracle(source: &Source, truth: &Truth) -> Result<Option<Shrink>, C
         return Ok(None);
     }
     let inquiry = source.inquiry()?;
-    let causes: Vec<Cause> = truth.facts.iter().filter_map(cause).collect();
+    let causes: Vec<Cause> = truth.facts.iter().filter_map(|fact| cause(fact, &inquiry)).collect();
     Ok(Some(HowFar::new(&inquiry)?.refit(&causes).shrink))
 }
 
 /// A true effect as a cause that one is sure of.
-fn cause(fact: &Fact) -> Option<Cause> {
+fn cause(fact: &Fact, inquiry: &Inquiry) -> Option<Cause> {
     let effect = fact.effect?;
     let known = |name: &str| fact.parameters.iter().find(|(p, _)| p.name == name);
     let estimate = |p: &'static xt28_sim::effects::Parameter| {
@@ -37,8 +37,16 @@ fn cause(fact: &Fact) -> Option<Cause> {
         probability: 1.0,
         parameters: effect.parameters.iter().map(estimate).collect(),
         class: vec![effect.name],
-        begins: (fact.start_s > 0.0)
-            .then(|| Beginning { run: "every run".to_owned(), at_s: fact.start_s }),
+        begins: Beginning::of(onset(fact, inquiry)),
         shrink: None,
     })
+}
+
+/// When it sets in, in every run or in one of those of `inquiry`.
+fn onset(fact: &Fact, inquiry: &Inquiry) -> Onset {
+    let is_in = |name: &String| inquiry.runs.iter().find(|run| run.file() == *name);
+    match fact.start_run.as_ref().and_then(is_in) {
+        Some(run) => Onset::once(run.signals.began_s + fact.start_s),
+        None => Onset::in_every_run(fact.start_s),
+    }
 }

@@ -50,8 +50,10 @@ pub struct Fact {
     pub effect: Option<&'static Effect>,
     /// Its wheels; all of them where it has none.
     pub scope: Scope,
-    /// When it begins in every run, s from the run's start.
+    /// When it begins, s from a run's start.
     pub start_s: f64,
+    /// The run in which it begins for good, by file name; none where it begins in every run.
+    pub start_run: Option<String>,
     /// Those of its numbers that the catalogue has too, in the catalogue's units.
     pub parameters: Vec<(&'static Parameter, f64)>,
 }
@@ -81,6 +83,7 @@ struct Line {
     target_signal: Option<String>,
     #[serde(default)]
     start_s: f64,
+    start_run: Option<String>,
     #[serde(default)]
     parameters: BTreeMap<String, f64>,
 }
@@ -170,7 +173,8 @@ impl Line {
             effect.and_then(|effect| parameters::translate(effect, name, *value))
         };
         let parameters = self.parameters.iter().filter_map(translate).collect();
-        Ok(Fact { name, effect, scope, start_s: self.start_s, parameters })
+        let (start_s, start_run) = (self.start_s, self.start_run);
+        Ok(Fact { name, effect, scope, start_s, start_run, parameters })
     }
 }
 

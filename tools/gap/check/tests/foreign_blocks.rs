@@ -1,7 +1,8 @@
 //! What a block of a foreign machine says of its own fault, without the rest of the machine.
 
 use xt28_gap::diagnosis::{
-    Base, Belief, Evidence, Fit, Generator, Hypothesis, Knob, Residual, Signal, Signals, Uneven,
+    Base, Belief, Evidence, Fit, Generator, Hypothesis, Knob, Onset, Residual, Signal, Signals,
+    Uneven,
 };
 use xt28_gap_check::Source;
 use xt28_gap_plants::{Case, Cause, Kind, Manoeuvre, Scope};
@@ -30,7 +31,10 @@ fn fits(
     let watched = arms.map(Generator::ArmStroke).collect();
     let machine = Machine::xt28();
     let evidence = Evidence::watching(watched, runs, &machine, Effects::default(), &Knob::all());
-    from_s.iter().map(|at_s| hypothesis.refit(&evidence, *at_s, &[start])).collect()
+    from_s
+        .iter()
+        .map(|at_s| hypothesis.refit(&evidence, Onset::in_every_run(*at_s), &[start]))
+        .collect()
 }
 
 #[test]
@@ -72,9 +76,10 @@ fn what_an_arm_leaves_open_another_run_may_tell() {
     let [fitted, other] = [&fitted, &other].map(|runs| evidence(runs));
     let scope = effects::Scope::Wheel(Wheel::Fr);
     let hypothesis = hypothesis("accumulator-gas", scope);
-    let alone = hypothesis.refit(&fitted, 0.0, &[1.0, 1.9e6, 1.0e-3, 1.4]);
+    let alone = hypothesis.refit(&fitted, Onset::ALWAYS, &[1.0, 1.9e6, 1.0e-3, 1.4]);
     let suiting = hypothesis.suiting(&fitted, &other, &alone);
-    let foretold = [&alone, &suiting].map(|fit| hypothesis.gain(&other, 0.0, &fit.values));
+    let foretold =
+        [&alone, &suiting].map(|fit| hypothesis.gain(&other, Onset::ALWAYS, &fit.values));
     assert!(suiting.log_evidence > 0.9 * alone.log_evidence, "{alone:?} {suiting:?}");
     assert!(foretold[1] > foretold[0] + 20.0, "{foretold:?}");
     assert!((suiting.values[1] / 2.889e6 - 1.0).abs() < 0.1, "{suiting:?}");
@@ -90,7 +95,7 @@ fn idle_motors_on_a_slope_hold_what_it_pulls() {
     let sloping = slope.applied(&Effects::default(), &[-0.0274, -0.0113]);
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), sloping, &Knob::all());
     let drag = hypothesis("standstill-drag", effects::Scope::Axle(Axle::Rear));
-    let fit = drag.refit(&evidence, 0.0, &[3.0e3]);
+    let fit = drag.refit(&evidence, Onset::ALWAYS, &[3.0e3]);
     assert!(fit.log_evidence > 10.0, "{fit:?}");
     // They hold by 3.9 kNm. Its tyres creep: arms that move slowly never ask for all of it.
     assert!((1.3e3..4.9e3).contains(&fit.values[0]), "{fit:?}");
@@ -106,7 +111,7 @@ fn a_slow_valve_in_the_place_of_a_late_command_leaves_its_echo() {
     let scope = effects::Scope::Wheel(Wheel::Fr);
     let echo = |effect| {
         let hypothesis = hypothesis(effect, scope);
-        let fit = hypothesis.refit(&evidence, 0.0, &[0.18]);
+        let fit = hypothesis.refit(&evidence, Onset::ALWAYS, &[0.18]);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
         evidence.again(&effects, &Effects::default()).0[0]
     };
@@ -123,11 +128,12 @@ fn a_scale_that_stands_for_a_bias_is_of_two_sizes() {
     let (runs, machine) = (runs.concat(), Machine::xt28());
     let watched = vec![Generator::ArmStroke(Wheel::Ml)];
     let evidence = Evidence::watching(watched, &runs, &machine, Effects::default(), &Knob::all());
+    let onset = Onset::in_every_run(10.8);
     let parting = |effect, from: &[f64]| {
         let hypothesis = hypothesis(effect, effects::Scope::Wheel(Wheel::Ml));
-        let fit = hypothesis.refit(&evidence, 10.8, from);
+        let fit = hypothesis.refit(&evidence, onset, from);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
-        let belief = Belief { effects: &effects, from_s: 10.8 };
+        let belief = Belief { effects: &effects, onset };
         let unevens = evidence.again(belief, &Effects::default()).1;
         unevens.iter().map(Uneven::nats).fold(0.0, f64::max)
     };
@@ -158,7 +164,8 @@ fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let runs = signals(case.only(Manoeuvre::ArmStep, 32.0));
     let deadband = hypothesis("valve-deadband", effects::Scope::All);
     let nothing = Effects::default();
-    let base = Base { effects: deadband.applied(&nothing, &[0.0345]), since_s: 10.3 };
+    let base =
+        Base { effects: deadband.applied(&nothing, &[0.0345]), since: Onset::in_every_run(10.3) };
     let scale = hypothesis("stroke-scale", effects::Scope::Wheel(Wheel::Fr));
     let both = scale.applied(&base.effects, &[1.0431]);
     let watched = vec![Generator::ArmStroke(Wheel::Fr)];

@@ -2,28 +2,30 @@
 
 use xt28_sim::Effects;
 
-/// What is believed already, and from when on in every run; what was before is not looked at.
+use super::onset::Onset;
+
+/// What is believed already, and from when on; what was before is not looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Base {
     /// The effects.
     pub effects: Effects,
-    /// Since when, s.
-    pub since_s: f64,
+    /// Since when.
+    pub since: Onset,
 }
 
 impl From<Effects> for Base {
     fn from(effects: Effects) -> Self {
-        Self { effects, since_s: 0.0 }
+        Self { effects, since: Onset::ALWAYS }
     }
 }
 
-/// Something to believe, and from when on in every run, s.
+/// Something to believe, and from when on.
 #[derive(Clone, Copy, Debug)]
 pub struct Belief<'e> {
     /// The effects.
     pub effects: &'e Effects,
-    /// Before this instant of every run the base holds.
-    pub from_s: f64,
+    /// Before it the base holds.
+    pub onset: Onset,
 }
 
 /// Which effects hold when in one run: a belief beside its base, `before` until `from_s` and `effects` after.
@@ -77,6 +79,6 @@ impl<'e> From<&'e Effects> for EffectSchedule<'e> {
 
 impl<'e> From<&'e Effects> for Belief<'e> {
     fn from(effects: &'e Effects) -> Self {
-        Self { effects, from_s: 0.0 }
+        Self { effects, onset: Onset::ALWAYS }
     }
 }

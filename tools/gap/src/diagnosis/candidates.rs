@@ -11,6 +11,7 @@ use super::belief::{Base, Belief};
 use super::evidence::{Echo, Evidence, Left, Uneven};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
+use super::onset::Onset;
 use super::overlap::Paid;
 use super::search::search;
 use super::signals::Signals;
@@ -100,8 +101,9 @@ impl Candidate {
     pub(super) fn goes_on_as(&self, second: &Self) -> bool {
         let (own, other) = (&self.fit, &second.fit);
         let is_on_both = |w| own.hypothesis.scope.contains(w) && other.hypothesis.scope.contains(w);
-        own.from_s > 0.0
-            && other.from_s > own.from_s
+        own.onset.is_late()
+            && other.onset != own.onset
+            && other.onset.later(own.onset) == other.onset
             && own.hypothesis.effect.block == other.hypothesis.effect.block
             && Wheel::ALL.into_iter().any(is_on_both)
     }
@@ -114,7 +116,7 @@ impl Candidate {
         let effect = xt28_sim::effects::find(name).unwrap();
         let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
         let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
-        let fit = Fit { hypothesis, values, sigma, from_s: 0.0, log_evidence: score };
+        let fit = Fit { hypothesis, values, sigma, onset: Onset::ALWAYS, log_evidence: score };
         let is_chosen_by_held = false;
         Self { fit, held_gain: None, held_most: 0.0, own_share: 1.0, is_chosen_by_held }
     }
@@ -160,16 +162,16 @@ impl<'a> Docket<'a> {
 
     /// What it costs to believe `fits`, tolerances at their best.
     pub(super) fn paid(&self, fits: &[&Fit]) -> Paid {
-        let (effects, from_s) = self.believing(fits);
-        let (left, shifts) = self.fit.left_and_shifts(Belief { effects: &effects, from_s });
+        let (effects, onset) = self.believing(fits);
+        let (left, shifts) = self.fit.left_and_shifts(Belief { effects: &effects, onset });
         Paid { left, shifts }
     }
 
     /// What each signal of the runs held out leaves, tolerances at their best there; nothing without any.
     pub(super) fn left_held(&self, fits: &[&Fit]) -> Vec<Left> {
-        let (effects, from_s) = self.believing(fits);
+        let (effects, onset) = self.believing(fits);
         let held = self.held.as_ref();
-        held.map_or(Vec::new(), |held| held.left(Belief { effects: &effects, from_s }))
+        held.map_or(Vec::new(), |held| held.left(Belief { effects: &effects, onset }))
     }
 
     /// What each signal of the runs held out leaves with tolerances where they are believed to be.
@@ -179,16 +181,16 @@ impl<'a> Docket<'a> {
 
     /// Where the tolerances go in the runs held out once `fits` are believed, each by how many of its own.
     pub(super) fn shifts_held(&self, fits: &[&Fit]) -> Vec<(Knob, f64)> {
-        let (effects, from_s) = self.believing(fits);
+        let (effects, onset) = self.believing(fits);
         let held = self.held.as_ref();
-        held.map_or(Vec::new(), |held| held.shifts(Belief { effects: &effects, from_s }))
+        held.map_or(Vec::new(), |held| held.shifts(Belief { effects: &effects, onset }))
     }
 
     /// How much of what is left there is what `fits` and the base explain of what `nothing` leaves, moved
     /// in time; and whether, in all runs, that is another share of it in one half than in the other.
     pub(super) fn again(&self, fits: &[&Fit], nothing: &Effects) -> (Vec<Echo>, Vec<Uneven>) {
-        let (effects, from_s) = self.believing(fits);
-        let belief = Belief { effects: &effects, from_s };
+        let (effects, onset) = self.believing(fits);
+        let belief = Belief { effects: &effects, onset };
         let (echoes, mut unevens) = self.fit.again(belief, nothing);
         let held = self.held.as_ref().map_or(Vec::new(), |held| held.again(belief, nothing).1);
         for uneven in held {
@@ -203,48 +205,51 @@ impl<'a> Docket<'a> {
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.
     pub(super) fn apart(&self, fits: &[&Fit], most: f64) -> Vec<Left> {
         let in_turn = self.in_turn(fits);
-        let beliefs = in_turn.iter().map(|(effects, from_s)| Belief { effects, from_s: *from_s });
+        let beliefs = in_turn.iter().map(|(effects, onset)| Belief { effects, onset: *onset });
         self.fit.apart(&beliefs.collect::<Vec<_>>(), most)
     }
 
-    /// What is believed once each of `fits` has set in, and from when on, s, the earliest first: one that
+    /// What is believed once each of `fits` has set in, and from when on, the earliest first: one that
     /// sets in late hides nothing of what was there before.
-    fn in_turn(&self, fits: &[&Fit]) -> Vec<(Effects, f64)> {
+    fn in_turn(&self, fits: &[&Fit]) -> Vec<(Effects, Onset)> {
         let mut fits = fits.to_vec();
-        fits.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        fits.sort_by(|a, b| a.onset.order(&b.onset));
         let mut effects = self.fit.base().clone();
-        let together = fits.chunk_by(|a, b| a.from_s.total_cmp(&b.from_s).is_eq());
+        let mut onset = Onset::ALWAYS;
+        let together = fits.chunk_by(|a, b| a.onset == b.onset);
         let beliefs = together.map(|together| {
             for fit in together {
                 effects = fit.hypothesis.applied(&effects, &fit.values);
             }
-            (effects.clone(), together[0].from_s)
+            onset = onset.later(together[0].onset);
+            (effects.clone(), onset)
         });
         beliefs.collect()
     }
 
-    fn believing(&self, fits: &[&Fit]) -> (Effects, f64) {
+    fn believing(&self, fits: &[&Fit]) -> (Effects, Onset) {
         let mut effects = self.fit.base().clone();
         for fit in fits {
             effects = fit.hypothesis.applied(&effects, &fit.values);
         }
-        (effects, fits.iter().map(|fit| fit.from_s).fold(0.0, f64::max))
+        (effects, fits.iter().map(|fit| fit.onset).fold(Onset::ALWAYS, Onset::later))
     }
 
     /// The effect of the best one at other scopes, from its own values: on more wheels, as of six that were looked
     /// at from a grid's values one alone may have come into its valley; and where it sets in late on all
     /// others too, as only one scope's beginning may have been close to one that was looked at.
     fn elsewhere(&self, best: &Candidate) -> Vec<Candidate> {
-        let Fit { hypothesis, from_s, ref values, .. } = best.fit;
+        let Fit { hypothesis, onset, ref values, .. } = best.fit;
+        let is_late = onset.is_late();
         let is_on = |other: &Hypothesis, w| other.scope.contains(w);
         let has_more = |other: &Hypothesis| {
             Wheel::ALL.into_iter().all(|w| !is_on(&hypothesis, w) || is_on(other, w))
         };
         let others = Hypothesis::of(&[hypothesis.effect]).into_par_iter();
-        let asked = |other: &Hypothesis| *other != hypothesis && (from_s > 0.0 || has_more(other));
+        let asked = |other: &Hypothesis| *other != hypothesis && (is_late || has_more(other));
         let others = others.filter(asked).map(|other| {
-            let found = self.weighed(other.refit(&self.fit, from_s, values));
-            let later = if from_s > 0.0 { self.set_in(&found) } else { None };
+            let found = self.weighed(other.refit(&self.fit, onset, values));
+            let later = if is_late { self.set_in(&found) } else { None };
             later.unwrap_or(found)
         });
         others.filter(|other| other.score() > best.score()).collect()
@@ -277,14 +282,17 @@ impl<'a> Docket<'a> {
     /// What a fit is worth on both sets of runs. One that sets in late and then does nothing is looked at
     /// as if it had always been there.
     fn weighed(&self, fit: Fit) -> Candidate {
-        let mut fit =
-            if is_there(&fit) { fit } else { fit.hypothesis.refit(&self.fit, 0.0, &fit.values) };
-        let gain = |held: &Evidence<'_>| fit.hypothesis.gain(held, fit.from_s, &fit.values);
+        let mut fit = if is_there(&fit) {
+            fit
+        } else {
+            fit.hypothesis.refit(&self.fit, Onset::ALWAYS, &fit.values)
+        };
+        let gain = |held: &Evidence<'_>| fit.hypothesis.gain(held, fit.onset, &fit.values);
         // Exactly nothing: not one residual is another with it.
         let held_gain = self.held.as_ref().map(|held| (gain(held), anew(held, &fit)));
         let held_gain = held_gain.filter(|(gain, _)| *gain != 0.0).map(|(gain, anew)| gain - anew);
         fit.log_evidence -= anew(&self.fit, &fit);
-        let most = |held: &Evidence<'_>| fit.hypothesis.most(held, fit.from_s, &fit.values);
+        let most = |held: &Evidence<'_>| fit.hypothesis.most(held, fit.onset, &fit.values);
         let held_most = self.held.as_ref().filter(|_| held_gain.is_some()).map_or(0.0, most);
         Candidate { fit, held_gain, held_most, own_share: 1.0, is_chosen_by_held: false }
     }
@@ -336,13 +344,13 @@ mod tests {
         let machine = Machine::xt28();
         let fit = Evidence::watching(generators, &runs, &machine, nothing, &knobs);
         let docket = Docket { fit, held: None };
-        let weak = |from_s| {
+        let weak = |at_s| {
             let weak = Candidate::made_up("steer-gain", Scope::All, 90.0).fit;
-            Fit { from_s, values: vec![0.3; weak.values.len()], ..weak }
+            Fit { onset: Onset::in_every_run(at_s), values: vec![0.3; weak.values.len()], ..weak }
         };
         let mut beside = Candidate::made_up("arm-delay", Scope::All, 90.0).fit;
         let neutral = beside.hypothesis.effect.parameters.iter().map(|p| p.neutral);
-        (beside.values, beside.from_s) = (neutral.collect(), 12.0);
+        (beside.values, beside.onset) = (neutral.collect(), Onset::in_every_run(12.0));
         let told = |fits: &[&Fit]| -> f64 {
             docket.apart(fits, f64::INFINITY).iter().map(|left| left.square).sum()
         };
@@ -355,9 +363,9 @@ mod tests {
 
     #[test]
     fn what_grows_by_steps_is_no_pair() {
-        let from = |name: &str, scope: Scope, from_s: f64| {
+        let from = |name: &str, scope: Scope, at_s: f64| {
             let mut late = Candidate::made_up(name, scope, 400.0);
-            late.fit.from_s = from_s;
+            late.fit.onset = Onset::in_every_run(at_s);
             late
         };
         let gain = from("valve-gain", Scope::All, 16.8);

@@ -15,6 +15,7 @@ use xt28_sim::Effects;
 
 use super::generator::{Generator, Residual, STEP_S};
 use super::inquiry::Inquiry;
+use super::onset::FirstOnset;
 use super::verdict::Diagnosis;
 use crate::GapError;
 
@@ -32,8 +33,6 @@ pub struct Details {
     pub map: Vec<RegimeGaps>,
     /// The same over the time of every run.
     pub strips: Vec<Strip>,
-    /// Time of every run at which the causes begin, s; 0 where they were there from its start.
-    pub since_s: f64,
     /// How every generator's error grows with time: first where the verdict sees most, then the largest.
     pub horizons: Vec<Curve>,
     /// Where the gap is largest on runs that were not fitted, before and after; on fitted ones where
@@ -59,6 +58,8 @@ pub struct RunLine {
     pub frames: u64,
     /// Whether causes were fitted on it.
     pub fit: bool,
+    /// When the first cause begins in it, s: 0 from its start, never where that is beyond its end.
+    pub since_s: f64,
 }
 
 /// Residuals of one generator on one run, before and after.
@@ -78,7 +79,8 @@ impl Details {
         let overlay = diagnosis.overlay();
         let mut with_causes = inquiry.believed.clone();
         overlay.entries.iter().for_each(|entry| entry.apply(&inquiry.machine, &mut with_causes));
-        let pairs = pairs(inquiry, &with_causes, diagnosis.since_s());
+        let since = diagnosis.since();
+        let pairs = pairs(inquiry, &with_causes, &since);
         Ok(Self {
             runs: inquiry
                 .runs
@@ -88,11 +90,11 @@ impl Details {
                     seconds: run.signals.duration_s(),
                     frames: run.log.frames(),
                     fit: run.fit,
+                    since_s: since.in_run(run.signals.began_s),
                 })
                 .collect(),
             map: regimes::map(inquiry, &pairs),
             strips: over_time::strips(&pairs),
-            since_s: diagnosis.since_s(),
             horizons: horizons::curves(&pairs, diagnosis),
             traces: traces::traces(inquiry, &pairs),
             whole: whole::whole(inquiry, diagnosis)?,
@@ -102,14 +104,15 @@ impl Details {
     }
 }
 
-/// Every generator on every run, before and after; `with_causes` from `since_s` on.
-fn pairs(inquiry: &Inquiry, with_causes: &Effects, since_s: f64) -> Vec<Pair> {
+/// Every generator on every run, before and after; `with_causes` from `since` on.
+fn pairs(inquiry: &Inquiry, with_causes: &Effects, since: &FirstOnset) -> Vec<Pair> {
     let runs = 0..inquiry.runs.len();
     let jobs: Vec<(usize, Generator)> =
         runs.flat_map(|run| Generator::all().into_iter().map(move |g| (run, g))).collect();
     let pair = |(run, generator): (usize, Generator)| {
         let signals = &inquiry.runs[run].signals;
         let of = |effects| generator.residuals(signals, &inquiry.machine, effects);
+        let since_s = since.in_run(signals.began_s);
         let (before, mut after) = (of(&inquiry.believed), of(with_causes));
         for (before, after) in before.iter().zip(&mut after) {
             let values = before.values.iter().zip(&mut after.values).zip(0_u32..);

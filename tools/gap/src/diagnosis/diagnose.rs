@@ -59,17 +59,16 @@ impl Inquiry {
         }
     }
 
-    /// What the logs say of every hypothesis, before it is judged.
-    #[must_use]
-    pub fn findings(&self, progress: &(dyn Fn(Progress) + Sync)) -> Findings {
+    /// What `runs`, those fitted and those held out, say of every hypothesis.
+    pub(super) fn findings_of(
+        &self,
+        runs: &[Vec<Signals>; 2],
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Findings {
         let tell = |stage, done| progress(Progress { stage, done });
-        let of = |fit: bool| -> Vec<Signals> {
-            let runs = self.runs.iter().filter(|run| run.fit == fit);
-            runs.map(|run| run.signals.clone()).collect()
-        };
-        let (fit, held) = (of(true), of(false));
+        let [fit, held] = runs;
         let knobs = Knob::of(&self.catalogue);
-        let docket = |base: &_| Docket::new([&fit, &held], &self.machine, base, &knobs);
+        let docket = |base: &_| Docket::new([fit, held], &self.machine, base, &knobs);
         tell("driving every block with what was measured", 0.0);
         let first = docket(&self.believed.clone().into());
         let (unbent, alone) = (first.unbent(), first.apart(&[], SHIFT_ALONE));
@@ -122,7 +121,7 @@ impl Inquiry {
     ) -> Pairs<'a> {
         let beside = |one: &Candidate| {
             let effects = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
-            docket(&Base { effects, since_s: one.fit.from_s })
+            docket(&Base { effects, since: one.fit.onset })
         };
         let others = |one: &Candidate, among: &[&'static Effect]| -> Vec<&'static Effect> {
             among.iter().copied().filter(|effect| *effect != one.fit.hypothesis.effect).collect()

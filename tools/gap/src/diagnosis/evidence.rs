@@ -27,6 +27,7 @@ use xt28_sim::Effects;
 use super::belief::{Base, Belief};
 use super::generator::Generator;
 use super::knob::Knob;
+use super::onset::Onset;
 use super::signals::Signals;
 pub(super) use ahead::Ahead;
 pub use echo::Echo;
@@ -134,21 +135,21 @@ impl<'a> Evidence<'a> {
         0.5 * self.cost_of(&sums)
     }
 
-    /// What it costs to believe `effects` from each of `instants` of every run on, s; what generators of
+    /// What it costs to believe `effects` from each of `onsets` on; what generators of
     /// one wheel say of `values` there is remembered.
     pub(super) fn costs_remembered(
         &self,
         effects: &Effects,
         only: &dyn Fn(Generator) -> bool,
-        instants: &[f64],
+        onsets: &[Onset],
         (values, memory): (&[f64], &mut Memory),
     ) -> Vec<f64> {
         let mut sums = |watch: &Watch| {
             let generator = watch.stack.generator;
             if !only(generator) {
-                return vec![watch.sums.clone(); instants.len()];
+                return vec![watch.sums.clone(); onsets.len()];
             }
-            let again = || watch.onsets(self.runs, &self.machine, effects, instants);
+            let again = || watch.onsets(self.runs, &self.machine, effects, onsets);
             if generator.wheel().is_none() {
                 return again();
             }
@@ -157,30 +158,30 @@ impl<'a> Evidence<'a> {
         };
         let sums: Vec<Vec<Sums>> = self.watches.iter().map(&mut sums).collect();
         let at = |k: usize| sums.iter().map(|all| Cow::Borrowed(&all[k])).collect::<Vec<_>>();
-        (0..instants.len()).map(|k| self.cost_of(&at(k))).collect()
+        (0..onsets.len()).map(|k| self.cost_of(&at(k))).collect()
     }
 
-    /// What it costs to believe `effects` from each of `instants` of every run on, s.
+    /// What it costs to believe `effects` from each of `onsets` on.
     pub(super) fn onset_costs(
         &self,
         effects: &Effects,
         only: &dyn Fn(Generator) -> bool,
-        instants: &[f64],
+        onsets: &[Onset],
     ) -> Vec<f64> {
         let late: Vec<Vec<Cow<'_, Sums>>> = self
             .watches
             .iter()
             .map(|watch| {
                 if only(watch.stack.generator) {
-                    let all = watch.onsets(self.runs, &self.machine, effects, instants);
+                    let all = watch.onsets(self.runs, &self.machine, effects, onsets);
                     all.into_iter().map(Cow::Owned).collect()
                 } else {
-                    instants.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()
+                    onsets.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()
                 }
             })
             .collect();
         let at = |k: usize| late.iter().map(|all| all[k].clone()).collect::<Vec<_>>();
-        (0..instants.len()).map(|k| self.cost_of(&at(k))).collect()
+        (0..onsets.len()).map(|k| self.cost_of(&at(k))).collect()
     }
 
     fn cost_of(&self, sums: &[Cow<'_, Sums>]) -> f64 {

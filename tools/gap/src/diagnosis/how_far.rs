@@ -32,6 +32,7 @@ pub use refit::Refit;
 use self::squares::Squares;
 use self::twin::{Forecast, PreparedRun};
 use super::inquiry::Inquiry;
+use super::onset::FirstOnset;
 use super::verdict::{Cause, Shrink};
 use crate::{Channel, GapError, Series};
 
@@ -77,7 +78,7 @@ impl HowFar {
             fit: inquiry.runs.iter().map(|run| run.fit).collect(),
             before: HorizonErrors::default(),
         };
-        how_far.before = how_far.gaps(&how_far.believed, 0.0);
+        how_far.before = how_far.gaps(&how_far.believed, &FirstOnset::default());
         Ok(how_far)
     }
 
@@ -91,26 +92,26 @@ impl HowFar {
     /// How far `effects` shrink the gap of what is believed.
     #[must_use]
     pub fn shrink(&self, effects: &Effects) -> Shrink {
-        self.shrink_of(&self.gaps(effects, 0.0))
+        self.shrink_of(&self.gaps(effects, &FirstOnset::default()))
     }
 
     /// How far `causes` at their values shrink it, each run without them until they begin.
     #[must_use]
     pub fn shrink_by(&self, causes: &[Cause]) -> Shrink {
-        self.shrink_of(&self.gaps(&self.with(causes), since_s(causes)))
+        self.shrink_of(&self.gaps(&self.with(causes), &since(causes)))
     }
 
     /// The gap on the judged runs under `effects` at a horizon of the whole machine: mean over signals,
     /// in floors.
     #[must_use]
     pub fn gap(&self, effects: &Effects, horizon: Horizon) -> f64 {
-        squares::gap(&self.squares(effects, horizon, 0.0, |k| self.judges(k)))
+        squares::gap(&self.squares(effects, horizon, &FirstOnset::default(), |k| self.judges(k)))
     }
 
     /// The same signal by signal.
     #[must_use]
     pub fn gap_by_signal(&self, effects: &Effects, horizon: Horizon) -> Vec<(Quantity, f64)> {
-        let squares = self.squares(effects, horizon, 0.0, |k| self.judges(k));
+        let squares = self.squares(effects, horizon, &FirstOnset::default(), |k| self.judges(k));
         Quantity::ALL.into_iter().zip(squares::by_signal(&squares)).collect()
     }
 
@@ -122,8 +123,8 @@ impl HowFar {
     #[must_use]
     pub fn traces(&self, run: usize, causes: &[Cause]) -> Traces {
         let prepared = &self.runs[run];
-        let (both, since_s) = ([&self.believed, &self.with(causes)], since_s(causes));
-        let foretold = prepared.foretell_since(&self.machine, both, since_s, Horizon::Run);
+        let both = [&self.believed, &self.with(causes)];
+        let foretold = prepared.foretell_since(&self.machine, both, &since(causes), Horizon::Run);
         Traces { run: prepared.signals.name.clone(), channels: traces::traces(prepared, &foretold) }
     }
 
@@ -152,15 +153,16 @@ impl HowFar {
         Shrink { one_step, five_s, run, interval: [one, five, whole] }
     }
 
-    fn gaps(&self, effects: &Effects, since_s: f64) -> HorizonErrors {
+    fn gaps(&self, effects: &Effects, since: &FirstOnset) -> HorizonErrors {
         let judged: Vec<&PreparedRun> =
             (0..self.runs.len()).filter(|&k| self.judges(k)).map(|k| &self.runs[k]).collect();
         let ahead = |prepared: &&PreparedRun| {
             let of = |effects| one_step::ahead(&prepared.signals, &self.machine, effects);
             let after = of(effects);
+            let since_s = since.in_run(prepared.signals.began_s);
             if since_s > 0.0 { one_step::splice(of(&self.believed), after, since_s) } else { after }
         };
-        let squares = |horizon| self.squares(effects, horizon, since_s, |k| self.judges(k));
+        let squares = |horizon| self.squares(effects, horizon, since, |k| self.judges(k));
         let ((ahead, five_s), run) = rayon::join(
             || (judged.par_iter().map(ahead).collect(), squares(Horizon::FiveSeconds)),
             || squares(Horizon::Run),
@@ -168,17 +170,17 @@ impl HowFar {
         HorizonErrors { ahead, five_s, run }
     }
 
-    /// Squared errors on the runs that `of` names, in order; with `effects` from `since_s` on.
+    /// Squared errors on the runs that `of` names, in order; with `effects` from `since` on.
     fn squares(
         &self,
         effects: &Effects,
         horizon: Horizon,
-        since_s: f64,
+        since: &FirstOnset,
         of: impl Fn(usize) -> bool + Sync,
     ) -> Vec<Squares> {
         let both = [&self.believed, effects];
         let foretell =
-            |prepared: &PreparedRun| prepared.foretell_since(&self.machine, both, since_s, horizon);
+            |prepared: &PreparedRun| prepared.foretell_since(&self.machine, both, since, horizon);
         self.squares_of(&foretell, horizon, of)
     }
 
@@ -199,11 +201,9 @@ impl HowFar {
     }
 }
 
-/// When the first of `causes` begins in a run, s.
-pub(super) fn since_s<'a>(causes: impl IntoIterator<Item = &'a Cause>) -> f64 {
-    let begins = |cause: &Cause| cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
-    let first = causes.into_iter().map(begins).reduce(f64::min);
-    first.unwrap_or_default()
+/// When the first of `causes` begins.
+pub(super) fn since<'a>(causes: impl IntoIterator<Item = &'a Cause>) -> FirstOnset {
+    FirstOnset::of(causes.into_iter().map(Cause::onset))
 }
 
 /// The overlay that puts `causes` into a simulator, each with the best value of its parameters.

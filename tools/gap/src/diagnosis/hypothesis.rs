@@ -10,6 +10,7 @@ use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
 use super::belief::Belief;
 use super::evidence::Evidence;
 use super::generator::Generator;
+use super::onset::Onset;
 use descent::{End, descend, follow_valley};
 use spread::Spread;
 
@@ -37,8 +38,8 @@ pub struct Fit {
     pub values: Vec<f64>,
     /// Standard deviation of each value, whatever the others are.
     pub sigma: Vec<f64>,
-    /// Before this instant of every run it is not there, s.
-    pub from_s: f64,
+    /// Before it the effect is not there.
+    pub onset: Onset,
     /// Logarithm of its evidence over that of the base, prior included.
     pub log_evidence: f64,
 }
@@ -51,7 +52,7 @@ impl Fit {
         let known = self.sigma.iter().zip(&other.sigma).map(|(a, b)| a.max(*b));
         let mut sizes = self.values.iter().zip(&other.values).zip(known);
         self.hypothesis != other.hypothesis
-            || (self.from_s - other.from_s).abs() > f64::EPSILON
+            || self.onset != other.onset
             || sizes.any(|((a, b), sigma)| (a - b).abs() > PARTS * sigma)
     }
 }
@@ -98,12 +99,12 @@ impl Hypothesis {
         effects
     }
 
-    /// Its best values, sought from `values`, the effect there from `from_s` s of every run on.
+    /// Its best values, sought from `values`, the effect there from `onset` on.
     #[must_use]
-    pub fn refit(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> Fit {
-        let cost = |values: &[f64]| self.cost(evidence, from_s, values);
+    pub fn refit(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> Fit {
+        let cost = |values: &[f64]| self.cost(evidence, onset, values);
         let best = descend(&cost, values.to_vec(), self.effect.parameters);
-        self.weighed(evidence, from_s, best.at, best.cost)
+        self.weighed(evidence, onset, best.at, best.cost)
     }
 
     /// The same hypothesis at the floor of its valley: sought further, where parameters make up for one
@@ -113,48 +114,48 @@ impl Hypothesis {
         if fit.values.len() == 1 {
             return fit;
         }
-        let cost = |values: &[f64]| self.cost(evidence, fit.from_s, values);
+        let cost = |values: &[f64]| self.cost(evidence, fit.onset, values);
         let end = End { cost: cost(&fit.values), at: fit.values };
         let best = follow_valley(&cost, end, self.effect.parameters);
-        self.weighed(evidence, fit.from_s, best.at, best.cost)
+        self.weighed(evidence, fit.onset, best.at, best.cost)
     }
 
     /// What `evidence` says of the hypothesis where it suits `other` runs as well, sought from `fit` on.
     #[must_use]
     pub fn suiting(&self, evidence: &Evidence<'_>, other: &Evidence<'_>, fit: &Fit) -> Fit {
         let cost = |values: &[f64]| {
-            self.cost(evidence, fit.from_s, values) - 2.0 * self.gain(other, fit.from_s, values)
+            self.cost(evidence, fit.onset, values) - 2.0 * self.gain(other, fit.onset, values)
         };
         let end = descend(&cost, fit.values.clone(), self.effect.parameters);
         let at = follow_valley(&cost, end, self.effect.parameters).at;
-        let cost = self.cost(evidence, fit.from_s, &at);
-        self.weighed(evidence, fit.from_s, at, cost)
+        let cost = self.cost(evidence, fit.onset, &at);
+        self.weighed(evidence, fit.onset, at, cost)
     }
 
     /// How much better `evidence` is explained with `values`: half the cost that goes.
     #[must_use]
-    pub fn gain(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+    pub fn gain(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
         let effects = self.applied(evidence.base(), values);
-        let belief = Belief { effects: &effects, from_s };
+        let belief = Belief { effects: &effects, onset };
         0.5 * (evidence.base_cost() - evidence.cost(belief, &self.heard()))
     }
 
     /// What that could be at most: if the machine were just so.
     #[must_use]
-    pub(super) fn most(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+    pub(super) fn most(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
         let effects = self.applied(evidence.base(), values);
-        evidence.most(Belief { effects: &effects, from_s }, &self.heard())
+        evidence.most(Belief { effects: &effects, onset }, &self.heard())
     }
 
-    /// The same for an effect that sets in at each of `instants` of every run, s.
+    /// The same for an effect that sets in at each of `onsets`.
     pub(super) fn onset_gains(
         &self,
         evidence: &Evidence<'_>,
-        instants: &[f64],
+        onsets: &[Onset],
         values: &[f64],
     ) -> Vec<f64> {
         let effects = self.applied(evidence.base(), values);
-        let costs = evidence.onset_costs(&effects, &self.heard(), instants);
+        let costs = evidence.onset_costs(&effects, &self.heard(), onsets);
         costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
     }
 
@@ -176,18 +177,18 @@ impl Hypothesis {
     }
 
     /// What is left and what one has to believe for it.
-    fn cost(&self, evidence: &Evidence<'_>, from_s: f64, values: &[f64]) -> f64 {
+    fn cost(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
         let effects = self.applied(evidence.base(), values);
-        evidence.cost(Belief { effects: &effects, from_s }, &self.heard()) + self.disbelief(values)
+        evidence.cost(Belief { effects: &effects, onset }, &self.heard()) + self.disbelief(values)
     }
 
-    fn weighed(&self, evidence: &Evidence<'_>, from_s: f64, values: Vec<f64>, cost: f64) -> Fit {
-        let of = |moved: &[f64]| self.cost(evidence, from_s, moved);
+    fn weighed(&self, evidence: &Evidence<'_>, onset: Onset, values: Vec<f64>, cost: f64) -> Fit {
+        let of = |moved: &[f64]| self.cost(evidence, onset, moved);
         let Spread { sigma, log_share } = Spread::about(&of, &values, cost, self.effect.parameters);
-        let beginning = if from_s > 0.0 { BEGINNINGS.ln() } else { 0.0 };
+        let beginning = if onset.is_late() { BEGINNINGS.ln() } else { 0.0 };
         let log_evidence =
             0.5 * (evidence.base_cost() - cost) + log_share - beginning + self.log_prior();
-        Fit { hypothesis: *self, values, sigma, from_s, log_evidence }
+        Fit { hypothesis: *self, values, sigma, onset, log_evidence }
     }
 }
 

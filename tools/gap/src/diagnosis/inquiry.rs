@@ -8,6 +8,7 @@ use xt28_sim::effects::{CATALOGUE, Effect};
 use super::excitation::not_testable;
 use super::generator::share_resistance;
 use super::noise::with_noise_of;
+use super::onset::put_in_order;
 use super::signals::Signals;
 use crate::{FieldLog, GapError, Terrain};
 
@@ -31,7 +32,7 @@ pub struct Inquiry {
     pub machine: Machine,
     /// Effects that one knows to be there.
     pub believed: Effects,
-    /// Its runs, in the order driven.
+    /// Its runs.
     pub runs: Vec<FieldRun>,
     /// Effects that may be the cause.
     pub catalogue: Vec<&'static Effect>,
@@ -78,12 +79,14 @@ impl FieldRun {
 
 impl Inquiry {
     /// The nominal machine with every effect of the catalogue in question. Floors become those of the
-    /// logs' own noise, and what resists the wheels is known to all runs.
+    /// logs' own noise, what resists the wheels is known to all runs, and stamps say which was driven first.
     #[must_use]
     pub fn new(machine: Machine, mut runs: Vec<FieldRun>) -> Self {
         runs.par_iter_mut().for_each(|run| {
             run.signals = with_noise_of(run.signals.clone(), run.log.all_series(), &machine);
         });
+        let stamped = runs.iter_mut().map(|run| (&mut run.signals, run.log.begun_s()));
+        put_in_order(&mut stamped.collect::<Vec<_>>());
         share_resistance(runs.iter_mut().map(|run| &mut run.signals), &machine);
         Self {
             believed: Effects::none_on(&machine),

@@ -31,8 +31,9 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let grounds = findings.grounds();
     let chances = Scales::IN_USE.chances(grounds);
     let mut causes = causes(findings, chances.known);
-    for cause in causes.iter_mut().filter(|cause| !is_told(inquiry, cause)) {
-        cause.begins = None;
+    for cause in &mut causes {
+        cause.begins = cause.begins.take().filter(|begins| is_told(inquiry, cause, begins.onset));
+        cause.begins.iter_mut().for_each(|begins| begins.told_by(&inquiry.runs));
     }
     let verdict = likeliest(&chances);
     let [before, after] = gaps(findings, verdict);

@@ -6,6 +6,7 @@ use xt28_sim::effects::{Effect, Parameter};
 use super::evidence::{Evidence, Memory};
 use super::generator::Generator;
 use super::hypothesis::{Fit, Hypothesis};
+use super::onset::{Onset, once_least};
 
 /// Grid of the first look, in tolerances from neutral.
 const REACHES: [f64; 8] = [-30.0, -10.0, -4.0, -1.5, 1.5, 4.0, 10.0, 30.0];
@@ -40,7 +41,7 @@ const GAIN_MIN: f64 = 0.5;
 struct Start {
     hypothesis: Hypothesis,
     values: Vec<f64>,
-    from_s: f64,
+    onset: Onset,
     gain: f64,
 }
 
@@ -70,7 +71,7 @@ pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> 
     }
     let mut fits: Vec<Fit> = followed
         .into_par_iter()
-        .map(|start| start.hypothesis.refit(evidence, start.from_s, &start.values))
+        .map(|start| start.hypothesis.refit(evidence, start.onset, &start.values))
         .collect();
     fits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
     let mut best: Vec<Fit> = Vec::new();
@@ -86,25 +87,42 @@ fn weight(start: &Start) -> f64 {
     start.gain + start.hypothesis.log_prior()
 }
 
+/// Onsets of the first look: instants of every run, and the starts of all runs but the first on their day.
+fn looked_from(evidence: &Evidence<'_>) -> Vec<Onset> {
+    let every = LOOKED_FROM_S.map(|at_s| Onset::in_every_run(at_s * evidence.stretch()));
+    let once = evidence.starts_on_the_day_s().into_iter().map(Onset::once);
+    every.into_iter().chain(once).collect()
+}
+
+/// The onset of most worth, and what that is, nats: `gains` are those of each of `onsets`.
+fn best_onset(onsets: &[Onset], gains: impl Iterator<Item = f64>) -> Option<(Onset, f64)> {
+    let late = |(onset, gain): (&Onset, f64)| {
+        let least = if onset.is_late() && !onset.is_once() { LATE_MIN } else { 0.0 };
+        (*onset, gain - least)
+    };
+    let (once, each): (Vec<_>, Vec<_>) =
+        onsets.iter().zip(gains).map(late).partition(|(onset, _)| onset.is_once());
+    let best = |all: Vec<(Onset, f64)>| all.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    let each = best(each)?;
+    let once = best(once).map(|(onset, gain)| (onset, gain - once_least(each.1)));
+    Some(once.filter(|once| once.1 > each.1).unwrap_or(each))
+}
+
 /// All scopes of one effect on the grid. What a single arm does with some values is the same at every
 /// scope that has the arm, and is remembered.
 fn first_look(evidence: &Evidence<'_>, effect: &'static Effect) -> Vec<Start> {
     let mut memory = Memory::new();
-    let instants = LOOKED_FROM_S.map(|at_s| at_s * evidence.stretch());
+    let onsets = looked_from(evidence);
     let mut starts = Vec::new();
     for hypothesis in Hypothesis::of(&[effect]) {
         for values in grid(effect.parameters) {
             let effects = hypothesis.applied(evidence.base(), &values);
             let only = |generator: Generator| generator.hears(effect, hypothesis.scope);
             let remembered = (&values[..], &mut memory);
-            let costs = evidence.costs_remembered(&effects, &only, &instants, remembered);
-            let worth = |(from_s, cost): (f64, f64)| {
-                let late = if from_s > 0.0 { LATE_MIN } else { 0.0 };
-                (from_s, 0.5 * (evidence.base_cost() - cost) - late)
-            };
-            let each = instants.into_iter().zip(costs).map(worth);
-            if let Some((from_s, gain)) = each.max_by(|a, b| a.1.total_cmp(&b.1)) {
-                starts.push(Start { hypothesis, values, from_s, gain });
+            let costs = evidence.costs_remembered(&effects, &only, &onsets, remembered);
+            let gains = costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost));
+            if let Some((onset, gain)) = best_onset(&onsets, gains) {
+                starts.push(Start { hypothesis, values, onset, gain });
             }
         }
     }

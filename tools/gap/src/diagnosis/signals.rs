@@ -35,6 +35,8 @@ pub struct Signals {
     pub name: String,
     /// The ground it was driven on, as far as one knows.
     pub terrain: Terrain,
+    /// When it began on the day that all runs were driven on, s of recording; 0 where nobody knows which was first.
+    pub began_s: f64,
     /// Number of samples.
     pub len: usize,
     /// Stroke commanded; where the arm stood, while it is to be held.
@@ -151,6 +153,7 @@ impl Signals {
         Ok(Self {
             name: name.to_owned(),
             terrain,
+            began_s: 0.0,
             len,
             target_stroke_m,
             is_arm_held,

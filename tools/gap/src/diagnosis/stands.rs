@@ -2,7 +2,8 @@
 
 use xt28_sim::effects::Overlay;
 
-use super::how_far::{overlay, since_s};
+use super::how_far::{overlay, since};
+use super::onset::FirstOnset;
 use super::verdict::{Cause, Diagnosis, Verdict};
 
 /// A cause at or below this probability is only listed.
@@ -23,10 +24,10 @@ impl Diagnosis {
         self.causes.iter().filter(move |cause| names_any && cause.stands())
     }
 
-    /// When the first of those causes begins in every run, s.
+    /// When the first of those causes begins.
     #[must_use]
-    pub fn since_s(&self) -> f64 {
-        since_s(self.stood_by())
+    pub fn since(&self) -> FirstOnset {
+        since(self.stood_by())
     }
 
     /// Those causes at their best values, for the simulator to load: it has them from its start on.

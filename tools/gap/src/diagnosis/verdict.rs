@@ -3,6 +3,8 @@
 use serde::{Serialize, Serializer};
 use xt28_sim::effects::{Block, Effect, Parameter, Scope};
 
+use super::beginning::Beginning;
+use super::onset::Onset;
 use super::scales::Grounds;
 use super::vague_laws::size_share;
 
@@ -166,6 +168,12 @@ pub struct Cause {
 pub(crate) const WORTH_TELLING: f64 = 0.01;
 
 impl Cause {
+    /// When it sets in.
+    #[must_use]
+    pub fn onset(&self) -> Onset {
+        self.begins.as_ref().map_or(Onset::ALWAYS, |begins| begins.onset)
+    }
+
     /// The other effects that these logs cannot tell from this one; none of what is all but ruled out.
     #[must_use]
     pub fn alike(&self) -> &[&'static str] {
@@ -232,15 +240,6 @@ impl Estimate {
         (*low, *high) = (low.min(other.value[1]), high.max(other.value[2]));
         self
     }
-}
-
-/// An effect that set in while one was looking.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Beginning {
-    /// Which runs it begins in: "every run".
-    pub run: String,
-    /// Instant in them, s.
-    pub at_s: f64,
 }
 
 /// Share of the gap that goes once an effect is in the simulator: 1 is all of it, below 0 is worse.

@@ -149,6 +149,7 @@ impl Intake {
             series: self.series,
             frames: self.frames,
             duration_s: (self.latest - self.first.unwrap_or_default()).as_secs_f64(),
+            begun_s: self.first.map(|first| (first - SimTime::default()).as_secs_f64()),
             name,
         })
     }

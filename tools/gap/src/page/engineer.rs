@@ -22,7 +22,11 @@ pub(super) fn page(diagnosis: &Diagnosis, details: &Details) -> String {
         out,
         "<h2>Where: gap of each block over the time of each run</h2>{}<p class=\"small\">The same colours, every two seconds{}.</p>",
         strip::draw(details),
-        if details.since_s > 0.0 { "; the line is where the causes begin" } else { "" }
+        if details.runs.iter().any(|run| run.since_s > 0.0) {
+            "; the line is where the causes begin"
+        } else {
+            ""
+        }
     );
     if !diagnosis.places.is_empty() {
         let _ = write!(out, "<h2>Where: the gaps that say most</h2>{}", table::places(diagnosis));

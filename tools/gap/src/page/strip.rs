@@ -44,8 +44,9 @@ pub(super) fn draw(details: &Details) -> String {
             svg.line([place(s), foot], [place(s), foot + 3.0], INK, 0.5);
             svg.text([place(s), foot + 12.0], &format!("{s}"), Anchor::Start, 8.0, INK);
         }
-        if details.since_s > 0.0 && details.since_s < CELL_S * n as f64 {
-            let begins = place(details.since_s);
+        let since_s = details.runs[run].since_s;
+        if since_s > 0.0 && since_s < CELL_S * n as f64 {
+            let begins = place(since_s);
             svg.line([begins, HEAD_PX - 2.0], [begins, foot], AFTER, 1.5);
         }
         x += width + BETWEEN_PX;

@@ -100,7 +100,7 @@ fn parameters(cause: &Cause) -> String {
         out.push(format!("<small>at {}</small>", on(cause.scope)));
     }
     if let Some(begins) = &cause.begins {
-        out.push(format!("from {:.1} s of {} on", begins.at_s, escape(&begins.run)));
+        out.push(format!("begins {}", escape(&begins.to_string())));
     }
     out.join("<br>")
 }

@@ -121,7 +121,7 @@ fn causes(out: &mut String, diagnosis: &Diagnosis) {
             let _ = writeln!(out, "{:>11}  wheels not told apart: {}", "", elsewhere(cause));
         }
         if let Some(begins) = &cause.begins {
-            let _ = writeln!(out, "{:>11}  begins {:.1} s into {}", "", begins.at_s, begins.run);
+            let _ = writeln!(out, "{:>11}  begins {begins}", "");
         }
         if let Some(by) = &cause.shrink {
             let fitted = diagnosis.held_out_runs.is_empty();

@@ -1,13 +1,16 @@
-//! When an effect sets in: not before some instant of every run.
+//! When an effect sets in: at some instant of every run, or once on the day.
 
 use xt28_sim::effects::{Block, Parameter};
 
 use super::super::evidence::Evidence;
 use super::super::hypothesis::Fit;
+use super::super::onset::{Onset, once_least};
 use super::{Candidate, Docket, OPEN};
 
 /// Instants of a test drive at which an effect may set in, s. Longer runs have them as much further apart.
 const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
+/// How far apart instants of the day lie at which an effect may set in for good, of a test drive, s.
+const ONCE_STEP_S: f64 = 4.0;
 /// How many of the leading hypotheses are asked when they set in.
 pub(super) const ASKED: usize = 6;
 /// How many are asked beside them that set in late, whatever they foretell.
@@ -33,39 +36,61 @@ const BEGINNING_STEPS_S: [f64; 2] = [1.0, 0.005];
 impl Docket<'_> {
     /// The same candidate setting in late, where that is worth it; one that does, at a better instant.
     pub(super) fn set_in(&self, found: &Candidate) -> Option<Candidate> {
-        let Fit { hypothesis, from_s, .. } = found.fit;
-        let is_late = from_s > 0.0;
-        let best = |instants: &[f64], values: &[f64]| {
-            let gains = hypothesis.onset_gains(&self.fit, instants, values);
-            let each = gains.into_iter().zip(instants.iter().copied());
+        let Fit { hypothesis, onset, ref values, .. } = found.fit;
+        let best = |onsets: &[Onset]| {
+            let gains = hypothesis.onset_gains(&self.fit, onsets, values);
+            let each = gains.into_iter().zip(onsets.iter().copied());
             each.max_by(|a, b| a.0.total_cmp(&b.0))
         };
-        let whole = hypothesis.gain(&self.fit, from_s, &found.fit.values);
+        let whole = hypothesis.gain(&self.fit, onset, values);
         let stretch = self.fit.stretch();
-        let (gain, at_s) = best(&SETS_IN_S.map(|at_s| at_s * stretch), &found.fit.values)?;
-        if !is_late && gain < whole + BEGINNING_HINT {
+        let each = best(&SETS_IN_S.map(|at_s| Onset::in_every_run(at_s * stretch)))?;
+        let once = best(&self.fit.onsets_on_the_day(ONCE_STEP_S * stretch));
+        let (other, least) = match onset.is_once() {
+            true => (each.0, 0.0),
+            false => (each.0.max(whole), once_least(each.0.max(whole))),
+        };
+        let once = once.filter(|once| once.0 > other + least);
+        let (gain, at) = once.unwrap_or(each);
+        if !onset.is_late() && gain < whole + BEGINNING_HINT {
             return None;
         }
-        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at_s, &found.fit.values)));
-        let least = if is_late { 0.0 } else { BEGINNING_MIN };
+        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at, values)));
+        let better = if late.score() > found.score() { &late } else { found };
+        if better.fit.onset.is_once() {
+            return Some(self.once_or_always(better.clone()));
+        }
+        let least = if onset.is_late() { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
     }
 
     /// One that sets in late with another beginning, of those that the runs fitted leave open, which suits the runs
     /// held out better: what sets in while the runs fitted stand still is told by one that moves.
     pub(super) fn begun_for_all(&self, found: &Candidate) -> Option<Candidate> {
-        let Fit { hypothesis, from_s, ref values, .. } = found.fit;
-        let held = self.held.as_ref().filter(|_| from_s > 0.0)?;
-        let here = hypothesis.gain(&self.fit, from_s, values);
+        let Fit { hypothesis, onset, ref values, .. } = found.fit;
+        let held = self.held.as_ref().filter(|_| onset.is_late())?;
+        let here = hypothesis.gain(&self.fit, onset, values);
         let least = here * (1.0 - OPEN[1]) - OPEN[0];
-        let last_s = SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch();
+        let last_s = if onset.is_once() {
+            self.fit.last_of_the_day_s()
+        } else {
+            SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch()
+        };
+        let starts: Vec<f64> = if onset.is_once() {
+            [&self.fit, held].map(Evidence::starts_on_the_day_s).concat()
+        } else {
+            Vec::new()
+        };
         // The middle of those within `reach_s` of `about_s` that suit all runs best.
         let best = |about_s: f64, reach_s: f64, step_s: f64| -> Option<f64> {
             let count = (2.0 * reach_s / step_s).round() as usize;
             let instants = (0..=count).map(|k| about_s - reach_s + k as f64 * step_s);
             let within = |at_s: &f64| *at_s > 0.0 && *at_s <= last_s;
-            let instants: Vec<f64> = instants.filter(within).collect();
-            let gains = |evidence| hypothesis.onset_gains(evidence, &instants, values);
+            let mut instants: Vec<f64> = instants.filter(within).collect();
+            instants.extend(&starts);
+            instants.sort_by(f64::total_cmp);
+            let onsets: Vec<Onset> = instants.iter().map(|at_s| onset.at(*at_s)).collect();
+            let gains = |evidence| hypothesis.onset_gains(evidence, &onsets, values);
             let each = instants.iter().zip(gains(&self.fit).into_iter().zip(gains(held)));
             let open = each.filter(|(_, (fitted, _))| *fitted > least);
             let both: Vec<(f64, f64)> =
@@ -76,14 +101,24 @@ impl Docket<'_> {
                 .filter(|(_, gain)| *gain > most - ALIKE)
                 .map(|(at_s, _)| *at_s)
                 .collect();
-            best.get(best.len() / 2).copied()
+            // What comes between two runs comes with the second: nobody knows when between them.
+            let with_run = best.iter().find(|at_s| starts.contains(at_s));
+            with_run.or_else(|| best.get(best.len() / 2)).copied()
         };
         let [coarse_s, fine_s] = OPEN_STEPS_S;
-        let about_s = best(from_s, last_s, coarse_s)?;
+        let about_s = best(onset.at_s(), last_s, coarse_s)?;
         let at_s = best(about_s, 3.0, fine_s)?;
-        let moved = self.weighed(hypothesis.refit(&self.fit, at_s, values));
+        let moved = self.weighed(hypothesis.refit(&self.fit, onset.at(at_s), values));
         let moved = Candidate { is_chosen_by_held: true, ..moved };
         (moved.score() > found.score()).then_some(moved)
+    }
+
+    /// One that comes once, or the same as it always was where that is as good: what was found on a grid to come once may
+    /// have done so because its values there were too large for the runs before.
+    fn once_or_always(&self, once: Candidate) -> Candidate {
+        let Fit { hypothesis, ref values, .. } = once.fit;
+        let always = self.weighed(hypothesis.refit(&self.fit, Onset::ALWAYS, values));
+        if once.score() > always.score() + once_least(always.score()) { once } else { always }
     }
 
     /// The same with its beginning where it explains most, its values anew after every step there: a leak
@@ -92,12 +127,11 @@ impl Docket<'_> {
         let mut step_s = BEGINNING_STEPS_S[0] * self.fit.stretch();
         while step_s >= BEGINNING_STEPS_S[1] {
             let hypothesis = fit.hypothesis;
-            let gain = |at_s: f64| (hypothesis.gain(&self.fit, at_s, &fit.values), at_s);
-            let here = gain(fit.from_s).0;
-            let near = [fit.from_s - step_s, fit.from_s + step_s];
-            let [before, after] = near.map(|at_s| gain(at_s.max(0.0)));
-            let (there, at_s) = if before.0 > after.0 { before } else { after };
-            let moved = (there > here).then(|| hypothesis.refit(&self.fit, at_s, &fit.values));
+            let gain = |at: Onset| (hypothesis.gain(&self.fit, at, &fit.values), at);
+            let here = gain(fit.onset).0;
+            let [before, after] = [-step_s, step_s].map(|by_s| gain(fit.onset.moved(by_s)));
+            let (there, at) = if before.0 > after.0 { before } else { after };
+            let moved = (there > here).then(|| hypothesis.refit(&self.fit, at, &fit.values));
             match moved.filter(|moved| moved.log_evidence > fit.log_evidence) {
                 Some(moved) => fit = moved,
                 None => step_s *= 0.5,
@@ -112,7 +146,8 @@ impl Docket<'_> {
 /// an arm moves just then.
 pub(super) fn asked(all: &[Candidate]) -> Vec<&Candidate> {
     let (leading, others) = all.split_at(all.len().min(ASKED));
-    let mut late: Vec<&Candidate> = others.iter().filter(|other| other.fit.from_s > 0.0).collect();
+    let mut late: Vec<&Candidate> =
+        others.iter().filter(|other| other.fit.onset.is_late()).collect();
     late.sort_by(|a, b| b.fit.log_evidence.total_cmp(&a.fit.log_evidence));
     leading.iter().chain(late.into_iter().take(ASKED_BESIDE)).collect()
 }
@@ -120,7 +155,7 @@ pub(super) fn asked(all: &[Candidate]) -> Vec<&Candidate> {
 /// What it explains that an arm's oil begins anew where an effect of it sets in late, nats: what next to
 /// nothing of the effect gains there. A jump of a pressure is gone with it, whatever the effect.
 pub(super) fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
-    if fit.from_s == 0.0 || fit.hypothesis.effect.block != Block::Arms {
+    if !fit.onset.is_late() || fit.hypothesis.effect.block != Block::Arms {
         return 0.0;
     }
     let barely = |p: &Parameter| {
@@ -128,7 +163,7 @@ pub(super) fn anew(evidence: &Evidence<'_>, fit: &Fit) -> f64 {
         if p.neutral + by <= p.range[1] { p.neutral + by } else { p.neutral - by }
     };
     let values: Vec<f64> = fit.hypothesis.effect.parameters.iter().map(barely).collect();
-    fit.hypothesis.gain(evidence, fit.from_s, &values).max(0.0)
+    fit.hypothesis.gain(evidence, fit.onset, &values).max(0.0)
 }
 
 /// Whether an effect that sets in late is there at all from then on.
@@ -137,7 +172,7 @@ pub(super) fn is_there(fit: &Fit) -> bool {
     let is_off = |(p, (value, sigma)): (&Parameter, (&f64, &f64))| {
         (value - p.neutral).abs() > BEGUN_SIGMA * sigma
     };
-    fit.from_s == 0.0 || each.into_iter().any(is_off)
+    !fit.onset.is_late() || each.into_iter().any(is_off)
 }
 
 #[cfg(test)]
@@ -154,7 +189,8 @@ mod tests {
                 // Rounded, and known to be anything.
                 (fit.values[k], fit.sigma[k]) = (p.neutral * (1.0 + 1e-8), p.tolerance);
             }
-            (fit.values[0], fit.sigma[0], fit.from_s) = (share, sigma, from_s);
+            (fit.values[0], fit.sigma[0]) = (share, sigma);
+            fit.onset = Onset::in_every_run(from_s);
             is_there(&fit)
         };
         assert!(!is_there_at(0.0, 0.05, 14.0) && !is_there_at(0.0245, 0.4, 14.0));
@@ -167,7 +203,7 @@ mod tests {
             (0..12).map(|_| Candidate::made_up("valve-gain", Scope::All, 5.0)).collect();
         for (k, (from_s, nats)) in [(12.0, 300.0), (0.0, 900.0)].into_iter().enumerate() {
             let beside = &mut all[10 + k];
-            (beside.fit.from_s, beside.fit.log_evidence) = (from_s, nats);
+            (beside.fit.onset, beside.fit.log_evidence) = (Onset::in_every_run(from_s), nats);
             (beside.held_gain, beside.held_most) = (Some(-200.0), 200.0);
         }
         let asked = asked(&all);

@@ -13,6 +13,7 @@ use super::watch::Sums;
 use super::{Evidence, add_precision, gradient};
 use crate::diagnosis::belief::Belief;
 use crate::diagnosis::generator::Generator;
+use crate::diagnosis::onset::Onset;
 
 /// What models leave of a signal that no run driven has, mean square in floors: half of what they may.
 const ORDINARY: f64 = 0.5;
@@ -89,7 +90,7 @@ impl<'a> Ahead<'a> {
         only: &dyn Fn(Generator) -> bool,
     ) -> f64 {
         let was = self.driven.sums(belief, only);
-        let will = self.foretold.sums(Belief { from_s: 0.0, ..belief }, only);
+        let will = self.foretold.sums(Belief { onset: Onset::ALWAYS, ..belief }, only);
         let step = self.step(&was, &will);
         let (before, after) =
             (self.driven.remaining(&was, &step), self.foretold.remaining(&will, &step));

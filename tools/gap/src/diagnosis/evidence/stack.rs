@@ -8,6 +8,7 @@ use xt28_sim::Effects;
 use crate::diagnosis::belief::{Base, Belief, EffectSchedule};
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::generator::{Generator, STEP_S};
+use crate::diagnosis::onset::Onset;
 use crate::diagnosis::signals::Signals;
 
 /// One signal of a generator, over all runs.
@@ -34,6 +35,8 @@ pub(super) struct Stack {
     pub(super) read_at_s: Vec<f64>,
     /// Run of each value, by its place.
     pub(super) run: Vec<usize>,
+    /// When each run began on the day, s.
+    began_s: Vec<f64>,
     /// All groups.
     pub(super) groups: Vec<Group>,
     /// What they were made with.
@@ -50,8 +53,6 @@ impl Stack {
         machine: &Machine,
         base: &Base,
     ) -> Self {
-        let (effects, since_s) = (&base.effects, base.since_s);
-        let schedule = EffectSchedule { since_s, ..effects.into() };
         let mut stack = Self {
             generator,
             values: Vec::new(),
@@ -59,11 +60,14 @@ impl Stack {
             at_s: Vec::new(),
             read_at_s: Vec::new(),
             run: Vec::new(),
+            began_s: runs.iter().map(|run| run.began_s).collect(),
             groups: Vec::new(),
             base: base.clone(),
             mask: Vec::new(),
         };
         for (number, run) in runs.iter().enumerate() {
+            let since_s = base.since.in_run(run.began_s);
+            let schedule = EffectSchedule { since_s, ..(&base.effects).into() };
             for residual in generator.residuals_over(run, machine, schedule) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
@@ -103,12 +107,13 @@ impl Stack {
         runs: &[Signals],
         machine: &Machine,
         before: &Effects,
-        Belief { effects, from_s }: Belief<'_>,
+        Belief { effects, onset }: Belief<'_>,
     ) -> Vec<f64> {
-        let schedule = EffectSchedule { before, from_s, effects, since_s: self.base.since_s };
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
+            let [from_s, since_s] = [onset, self.base.since].map(|at| at.in_run(run.began_s));
+            let schedule = EffectSchedule { before, from_s, effects, since_s };
             for residual in self.generator.residuals_over(run, machine, schedule) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
@@ -120,6 +125,11 @@ impl Stack {
             }
         }
         values
+    }
+
+    /// Whether what value `k` tells was read before `onset`.
+    pub(super) fn is_before(&self, onset: Onset, k: usize) -> bool {
+        self.read_at_s[k] < onset.in_run(self.began_s[self.run[k]])
     }
 
     /// What they were made with.

@@ -14,6 +14,7 @@ use super::stack::{Group, Stack};
 use crate::diagnosis::belief::{Base, Belief};
 use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::knob::Knob;
+use crate::diagnosis::onset::Onset;
 use crate::diagnosis::signals::Signals;
 
 /// Share of a knob's tolerance by which it is nudged.
@@ -155,7 +156,7 @@ impl Watch {
         machine: &Machine,
         belief: Belief<'_>,
     ) -> Vec<f64> {
-        self.stitched(&self.stack.again(runs, machine, belief), belief.from_s)
+        self.stitched(&self.stack.again(runs, machine, belief), belief.onset)
     }
 
     /// The same under beliefs that take over from one another, each at its own instant, the first from the base.
@@ -169,8 +170,8 @@ impl Watch {
         let mut before = self.stack.base_effects();
         for belief in beliefs {
             let later = self.stack.after(runs, machine, before, *belief);
-            for ((value, later), at_s) in values.iter_mut().zip(later).zip(&self.stack.read_at_s) {
-                if *at_s >= belief.from_s {
+            for (k, (value, later)) in values.iter_mut().zip(later).enumerate() {
+                if !self.stack.is_before(belief.onset, k) {
                     *value = later;
                 }
             }
@@ -179,22 +180,21 @@ impl Watch {
         values
     }
 
-    /// The same for effects that set in at each of `instants` of every run, s; as if they had always been
-    /// there, so that one run of the generator does for all. But for a valve's play: the spool would not be where it
+    /// The same for effects that set in at each of `onsets`; as if they had always been there, so that one run of the generator does for all. But for a valve's play: the spool would not be where it
     /// is, for as long as no command crosses the play.
     pub(super) fn onsets(
         &self,
         runs: &[Signals],
         machine: &Machine,
         effects: &Effects,
-        instants: &[f64],
+        onsets: &[Onset],
     ) -> Vec<Sums> {
         if self.stack.plays_otherwise(effects) {
-            let belief = |&from_s| Belief { effects, from_s };
-            return instants.iter().map(|at| self.again(runs, machine, belief(at))).collect();
+            let belief = |&onset| Belief { effects, onset };
+            return onsets.iter().map(|at| self.again(runs, machine, belief(at))).collect();
         }
         let values = self.stack.again(runs, machine, effects.into());
-        instants.iter().map(|&at_s| self.sums_of(&self.stitched(&values, at_s))).collect()
+        onsets.iter().map(|&onset| self.sums_of(&self.stitched(&values, onset))).collect()
     }
 
     /// `values` once the tolerances have gone by `step`.
@@ -271,10 +271,11 @@ impl Watch {
         groups.iter().enumerate().flat_map(of).collect()
     }
 
-    /// The base before `from_s` of every run, `values` after.
-    fn stitched(&self, values: &[f64], from_s: f64) -> Vec<f64> {
-        let both = values.iter().zip(&self.stack.values).zip(&self.stack.read_at_s);
-        both.map(|((value, base), at_s)| if *at_s < from_s { *base } else { *value }).collect()
+    /// The base before `onset`, `values` after.
+    fn stitched(&self, values: &[f64], onset: Onset) -> Vec<f64> {
+        let both = values.iter().zip(&self.stack.values).enumerate();
+        both.map(|(k, (value, base))| *if self.stack.is_before(onset, k) { base } else { value })
+            .collect()
     }
 
     /// What the cost needs to know of `values`.

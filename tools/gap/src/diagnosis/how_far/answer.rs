@@ -71,11 +71,12 @@ impl HowFar {
 
 /// What to say of causes that do not set in together; nothing of those that do.
 fn at_different_times(causes: &[Cause]) -> Option<String> {
-    let begins = |cause: &Cause| cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
-    let each: Vec<f64> = causes.iter().map(begins).collect();
-    each.windows(2).any(|pair| pair[0] != pair[1]).then(|| {
-        let told = |(cause, at_s): (&Cause, &f64)| format!("{} from {at_s:.1} s", cause.effect.name);
-        let told: Vec<String> = causes.iter().zip(&each).map(told).collect();
+    causes.windows(2).any(|pair| pair[0].onset() != pair[1].onset()).then(|| {
+        let told = |cause: &Cause| match &cause.begins {
+            Some(begins) => format!("{} begins {begins}", cause.effect.name),
+            None => format!("{} is there from the start", cause.effect.name),
+        };
+        let told: Vec<String> = causes.iter().map(told).collect();
         format!(
             "{}: how far the gap shrinks with both is told with both of them from the first of these on, \
              so that it may shrink less than it would; their sizes are what the blocks alone say",
@@ -97,7 +98,7 @@ mod tests {
     use xt28_sim::effects::{Scope, find};
 
     use super::*;
-    use crate::diagnosis::verdict::Beginning;
+    use crate::diagnosis::{Beginning, Onset};
 
     fn cause(name: &str, at_s: Option<f64>) -> Cause {
         Cause {
@@ -108,7 +109,7 @@ mod tests {
             probability: 0.9,
             parameters: Vec::new(),
             class: vec!["arm-delay"],
-            begins: at_s.map(|at_s| Beginning { run: "every run".to_owned(), at_s }),
+            begins: at_s.map(Onset::in_every_run).and_then(Beginning::of),
             shrink: None,
         }
     }
@@ -119,7 +120,12 @@ mod tests {
         assert_eq!(of(None, None), None);
         assert_eq!(of(Some(12.0), Some(12.0)), None);
         let note = of(None, Some(12.0)).unwrap();
-        assert!(note.starts_with("arm-delay from 0.0 s, payload from 12.0 s: "), "{note}");
+        assert!(
+            note.starts_with(
+                "arm-delay is there from the start, payload begins 12.0 s into every run: "
+            ),
+            "{note}"
+        );
         assert_eq!(at_different_times(&[cause("arm-delay", Some(3.0))]), None);
     }
 }

@@ -18,8 +18,9 @@ use xt28_sim::effects::{Block, LOCK_STIFFNESS, Parameter, Scope};
 use super::machine_sample::{Horizon, WIDTH, floors};
 use super::squares::{self, BLOCK, LOST};
 use super::twin::PreparedRun;
-use super::{HowFar, since_s};
+use super::{HowFar, since};
 use crate::diagnosis::knob::{Knob, TOLERANCES};
+use crate::diagnosis::onset::FirstOnset;
 use crate::diagnosis::verdict::{Cause, Estimate, Shrink};
 
 /// Tolerances of the machine that may give way beside a cause, and with them the stiffness of all arms' locks.
@@ -65,7 +66,7 @@ impl HowFar {
     /// the middle of the runs, from the first beginning on.
     #[must_use]
     pub fn refit(&self, causes: &[Cause]) -> Refit {
-        let (turns, since_s) = (turns(causes), since_s(causes));
+        let (turns, since) = (turns(causes), &since(causes));
         let start: Vec<f64> = turns
             .iter()
             .map(|turn| {
@@ -75,10 +76,10 @@ impl HowFar {
                 estimate.map_or(turn.parameter.neutral, |e| e.value[0]).clamp(low, high)
             })
             .collect();
-        let (at, sigma) = self.descend(&turns, &start, since_s);
+        let (at, sigma) = self.descend(&turns, &start, since);
         let fit_gap = |values: &[f64]| {
             let effects = self.turned(&turns, values);
-            squares::gap(&self.squares(&effects, Horizon::FiveSeconds, since_s, |k| self.fits(k)))
+            squares::gap(&self.squares(&effects, Horizon::FiveSeconds, since, |k| self.fits(k)))
         };
         let (before, after) = rayon::join(|| fit_gap(&start), || fit_gap(&at));
         let (at, after) = if after <= before { (at, after) } else { (start, before) };
@@ -95,7 +96,7 @@ impl HowFar {
                 None => estimate,
             });
         }
-        let shrink = self.shrink_of(&self.gaps(&effects, since_s));
+        let shrink = self.shrink_of(&self.gaps(&effects, since));
         Refit { shrink, effects, estimates, fit_gap: [before, after] }
     }
 
@@ -103,8 +104,9 @@ impl HowFar {
     /// floors, each error counted as often as it is drawn anew. Differences of 2 are worth naming.
     #[must_use]
     pub fn cost(&self, effects: &Effects) -> f64 {
-        let errors = self.errors(&self.machine, effects, 0.0);
-        let (slopes, _) = self.neighbours(effects, &errors, 0.0);
+        let always = FirstOnset::default();
+        let errors = self.errors(&self.machine, effects, &always);
+        let (slopes, _) = self.neighbours(effects, &errors, &always);
         let (squares, gradient, matrix) = normal(&slopes, &errors);
         let matrix = matrix + DMatrix::identity(slopes.len(), slopes.len());
         let step = Cholesky::new(matrix).expect("a sum of squares and the identity");
@@ -125,7 +127,7 @@ impl HowFar {
     }
 
     /// Weighted errors of the fit runs, made robust; one number a sample and channel.
-    fn errors(&self, machine: &Machine, effects: &Effects, since_s: f64) -> Vec<f64> {
+    fn errors(&self, machine: &Machine, effects: &Effects, since: &FirstOnset) -> Vec<f64> {
         let runs: Vec<&PreparedRun> = self
             .runs
             .iter()
@@ -134,7 +136,7 @@ impl HowFar {
             .map(|(_, run)| run)
             .collect();
         let both = [&self.believed, effects];
-        runs.par_iter().flat_map_iter(|run| errors(run, machine, both, since_s)).collect()
+        runs.par_iter().flat_map_iter(|run| errors(run, machine, both, since)).collect()
     }
 
     /// Slopes of the errors by each neighbour, a tolerance each.
@@ -142,29 +144,29 @@ impl HowFar {
         &self,
         effects: &Effects,
         errors: &[f64],
-        since_s: f64,
+        since: &FirstOnset,
     ) -> (Vec<Vec<f64>>, Vec<Knob>) {
         let knobs = neighbours();
         let slope = |knob: &Knob| {
             let (mut machine, mut effects) = (self.machine.clone(), effects.clone());
             knob.set(&mut machine, &mut effects, knob.neutral() + knob.tolerance());
-            difference(&self.errors(&machine, &effects, since_s), errors, 1.0)
+            difference(&self.errors(&machine, &effects, since), errors, 1.0)
         };
         (knobs.par_iter().map(slope).collect(), knobs)
     }
 
     /// Best values, and the standard deviation of each.
-    fn descend(&self, turns: &[Turn], start: &[f64], since_s: f64) -> (Vec<f64>, Vec<f64>) {
+    fn descend(&self, turns: &[Turn], start: &[f64], since: &FirstOnset) -> (Vec<f64>, Vec<f64>) {
         let effects_at = |values: &[f64]| self.turned(turns, values);
         let mut at = start.to_vec();
-        let mut errors = self.errors(&self.machine, &effects_at(&at), since_s);
-        let (beside, knobs) = self.neighbours(&effects_at(&at), &errors, since_s);
+        let mut errors = self.errors(&self.machine, &effects_at(&at), since);
+        let (beside, knobs) = self.neighbours(&effects_at(&at), &errors, since);
         // Neighbours as they were believed when `errors` were made, tolerances.
         let mut gave = DVector::<f64>::zeros(knobs.len());
         let mut damping = 1.0e-3;
         let mut sigma = vec![0.0; turns.len()];
         for _ in 0..ROUNDS {
-            let slopes = self.slopes((turns, since_s), &at, &gave, &knobs, &errors);
+            let slopes = self.slopes((turns, since), &at, &gave, &knobs, &errors);
             let all: Vec<Vec<f64>> = slopes.into_iter().chain(beside.iter().cloned()).collect();
             let (squares, mut gradient, mut matrix) = normal(&all, &errors);
             for (k, gave) in gave.iter().enumerate() {
@@ -188,7 +190,7 @@ impl HowFar {
                 let moved: Vec<f64> = turns.iter().zip(&at).zip(step.iter()).map(move_by).collect();
                 let giving = &gave + step.rows(turns.len(), knobs.len());
                 let (machine, effects) = self.given(&knobs, &giving, effects_at(&moved));
-                let trial = self.errors(&machine, &effects, since_s);
+                let trial = self.errors(&machine, &effects, since);
                 let after = sum(&trial) + giving.norm_squared() + against(turns, start, &moved);
                 if after < cost {
                     gained = 1.0 - after / cost;
@@ -223,7 +225,7 @@ impl HowFar {
     /// Slopes of the errors by each parameter, in tolerances.
     fn slopes(
         &self,
-        (turns, since_s): (&[Turn], f64),
+        (turns, since): (&[Turn], &FirstOnset),
         at: &[f64],
         gave: &DVector<f64>,
         knobs: &[Knob],
@@ -241,11 +243,7 @@ impl HowFar {
             let mut moved = at.to_vec();
             moved[k] += nudge;
             let (machine, effects) = self.given(knobs, gave, self.turned(turns, &moved));
-            difference(
-                &self.errors(&machine, &effects, since_s),
-                errors,
-                nudge / parameter.tolerance,
-            )
+            difference(&self.errors(&machine, &effects, since), errors, nudge / parameter.tolerance)
         };
         (0..turns.len()).into_par_iter().map(slope).collect()
     }
@@ -287,9 +285,14 @@ fn move_by(((turn, at), step): ((&Turn, &f64), &f64)) -> f64 {
 }
 
 /// Errors of one run, each forecast filled up with zeros to a whole block.
-fn errors(run: &PreparedRun, machine: &Machine, both: [&Effects; 2], since_s: f64) -> Vec<f64> {
+fn errors(
+    run: &PreparedRun,
+    machine: &Machine,
+    both: [&Effects; 2],
+    since: &FirstOnset,
+) -> Vec<f64> {
     let floors = floors(Horizon::FiveSeconds);
-    let foretold = run.foretell_since(machine, both, since_s, Horizon::FiveSeconds);
+    let foretold = run.foretell_since(machine, both, since, Horizon::FiveSeconds);
     let mut errors = Vec::new();
     for forecast in &foretold {
         for (measured, ours) in run.measured[forecast.from..].iter().zip(&forecast.samples) {

@@ -11,6 +11,7 @@ use super::measured::Measured;
 use super::reader::Reader;
 use crate::commands::{Command, Speaker, commands};
 use crate::diagnosis::inquiry::FieldRun;
+use crate::diagnosis::onset::FirstOnset;
 use crate::diagnosis::signals::{DT_S, Signals};
 use crate::{Decoder, GapError};
 
@@ -94,7 +95,7 @@ impl PreparedRun {
         })
     }
 
-    /// The machine with `before` until `since_s` in the run and with `effects` from then on.
+    /// The machine with `before` until `since` in the run and with `effects` from then on.
     ///
     /// A forecast that begins later has them from its start. One that begins earlier goes over from one
     /// machine to the other, whose way is shifted to where the first one is: what else the second had
@@ -103,10 +104,11 @@ impl PreparedRun {
         &self,
         machine: &Machine,
         [before, effects]: [&Effects; 2],
-        since_s: f64,
+        since: &FirstOnset,
         horizon: Horizon,
     ) -> Vec<Forecast> {
         let foretell = |effects| self.foretell(machine, effects, horizon, Held::default());
+        let since_s = since.in_run(self.signals.began_s);
         if since_s <= 0.0 {
             return foretell(effects);
         }

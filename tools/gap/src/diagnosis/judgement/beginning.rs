@@ -3,6 +3,7 @@
 use crate::diagnosis::generator::{Generator, Residual};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::inquiry::Inquiry;
+use crate::diagnosis::onset::Onset;
 use crate::diagnosis::signals::Signals;
 use crate::diagnosis::verdict::Cause;
 
@@ -11,17 +12,16 @@ const SHOWS: f64 = 1.0;
 /// Samples of a residual a second.
 const RATE_HZ: f64 = 10.0;
 
-/// Whether `cause`, had it been there from the start, would have shown before it sets in. A play shows
+/// Whether `cause`, had it been there from the start, would have shown before it sets in at `onset`. A play shows
 /// nothing before the first bend: it may always have been there.
-pub(super) fn is_told(inquiry: &Inquiry, cause: &Cause) -> bool {
-    let Some(begins) = &cause.begins else { return false };
+pub(super) fn is_told(inquiry: &Inquiry, cause: &Cause, onset: Onset) -> bool {
     let hypothesis = Hypothesis { effect: cause.effect, scope: cause.scope };
     let values: Vec<f64> = cause.parameters.iter().map(|estimate| estimate.value[0]).collect();
     let always = hypothesis.applied(&inquiry.believed, &values);
     let shows = |generator: Generator, s: &Signals| {
         let [without, with] = [&inquiry.believed, &always]
             .map(|effects| generator.residuals(s, &inquiry.machine, effects));
-        without.iter().zip(&with).any(|pair| part_before(begins.at_s, pair))
+        without.iter().zip(&with).any(|pair| part_before(onset.in_run(s.began_s), pair))
     };
     let mut heard = Generator::all().into_iter().filter(|g| g.hears(cause.effect, cause.scope));
     heard.any(|generator| {

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::Findings;
+use crate::diagnosis::beginning::Beginning;
 use crate::diagnosis::candidates::Candidate;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::scales::turned;
-use crate::diagnosis::verdict::{Beginning, Cause, Estimate};
+use crate::diagnosis::verdict::{Cause, Estimate};
 
 /// Evidence of a second cause beside the first at which it and nothing are as likely, nats, and how
 /// sharply that turns; and the share of the first's evidence by which that rises where another law of
@@ -129,8 +130,7 @@ fn told(odds: &Odds<'_>, known: f64) -> Vec<Cause> {
             probability: known * weight,
             parameters: estimates(at[0].0),
             class: class(name, *weight, &weights),
-            begins: (fit.from_s > 0.0)
-                .then(|| Beginning { run: "every run".to_owned(), at_s: fit.from_s }),
+            begins: Beginning::of(fit.onset),
             shrink: None,
         }
     };

@@ -7,6 +7,7 @@ use super::super::floor::Signal;
 use super::super::floors::Floors;
 use super::super::hypothesis::Fit;
 use super::super::inquiry::Inquiry;
+use super::super::onset::on_the_day;
 use super::super::signals::{PERIOD_S, command_periods_s};
 use super::super::verdict::Verdict;
 use super::objection::Objection;
@@ -36,6 +37,7 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
         let objection = findings.objection();
         notes.extend(findings.another_order());
         notes.extend(joints_elsewhere(&objection));
+        notes.extend(order_unknown(inquiry));
         notes.push(findings.why_unknown(&objection));
     }
     notes
@@ -71,6 +73,16 @@ fn slopes_unseen(inquiry: &Inquiry) -> Option<String> {
             "the ground of {runs} slopes and no receiver says which way the machine heads on it, so how it stands and \
              what drives it is not judged there: log the receiver's heading"
         )
+    })
+}
+
+/// What sets in once can be looked for only where one knows which run came first.
+fn order_unknown(inquiry: &Inquiry) -> Option<String> {
+    let runs: Vec<_> = inquiry.runs.iter().map(|run| &run.signals).collect();
+    (runs.len() > 1 && on_the_day(runs).is_empty()).then(|| {
+        "the stamps of the logs do not say which was recorded first, so nothing was looked for that set in with one \
+         run and stayed: give logs with their dates"
+            .to_owned()
     })
 }
 

@@ -7,6 +7,7 @@ use crate::diagnosis::belief::Belief;
 use crate::diagnosis::generator::Generator;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::inquiry::Inquiry;
+use crate::diagnosis::onset::Onset;
 use crate::diagnosis::verdict::{Cause, Diagnosis, WORTH_TELLING};
 
 /// Causes, or wheels of one, that are told apart, at most.
@@ -24,8 +25,8 @@ pub(super) struct Rival {
     /// All that is believed with it.
     pub(super) effects: Effects,
     cause: Option<(Hypothesis, Vec<f64>)>,
-    /// When it begins in the runs driven, s.
-    from_s: f64,
+    /// When it begins in the runs driven.
+    onset: Onset,
 }
 
 /// A cause at some wheels, and how likely it is to be there.
@@ -66,7 +67,7 @@ pub(super) fn rivals(inquiry: &Inquiry, diagnosis: &Diagnosis) -> (Effects, Vec<
     let mut rivals: Vec<Rival> = places.iter().map(|place| place.rival(&base, &places)).collect();
     if diagnosis.probability_none >= WORTH_TELLING {
         let effects = base.clone();
-        rivals.push(Rival { name: "none".to_owned(), effects, cause: None, from_s: 0.0 });
+        rivals.push(Rival { name: "none".to_owned(), effects, cause: None, onset: Onset::ALWAYS });
     }
     (base, rivals)
 }
@@ -105,15 +106,15 @@ impl<'a> CauseAt<'a> {
         let is_alone = all.iter().filter(|other| other.cause.effect.name == name).count() == 1;
         let name = if is_alone { name.to_owned() } else { format!("{name} ({})", self.scope) };
         let hypothesis = Hypothesis { effect: self.cause.effect, scope: self.scope };
-        let from_s = self.cause.begins.as_ref().map_or(0.0, |begins| begins.at_s);
-        Rival { name, effects, cause: Some((hypothesis, self.values.clone())), from_s }
+        let onset = self.cause.onset();
+        Rival { name, effects, cause: Some((hypothesis, self.values.clone())), onset }
     }
 }
 
 impl Rival {
     /// It, as a belief on the runs driven.
     pub(super) fn belief(&self) -> Belief<'_> {
-        Belief { effects: &self.effects, from_s: self.from_s }
+        Belief { effects: &self.effects, onset: self.onset }
     }
 
     /// The least that `cost` makes of it beside `base`, with what one has to believe for its parameters.
@@ -125,7 +126,7 @@ impl Rival {
         let only = |generator: Generator| generator.hears(effect, scope);
         let of = |values: &[f64]| {
             let effects = &hypothesis.applied(base, values);
-            cost(Belief { effects, from_s: self.from_s }, &only)
+            cost(Belief { effects, onset: self.onset }, &only)
         };
         hypothesis.least(&of, values)
     }

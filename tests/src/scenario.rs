@@ -121,8 +121,9 @@ impl Scenario {
             })?;
             scenario.script = Some(Script { path: script, text });
         }
-        if let Some(file) = &scenario.operator {
-            let cab = CabScript::read(&beside.join(file), &read);
+        if let Some(file) = &mut scenario.operator {
+            *file = beside.join(&file);
+            let cab = CabScript::read(file, &read);
             scenario.cab = Some(cab.map_err(|source| ScenarioError::Operator {
                 operator_at: format!("{}:{}", path.display(), line_of(text, "operator")),
                 source,

@@ -1,7 +1,7 @@
 //! What a command writes: never over what it reads or what it wrote before, and nothing is lost for the sake of it.
 
 use std::fs;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn xt28(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
@@ -29,6 +29,7 @@ fn path(folder: &tempfile::TempDir, name: &str) -> String {
 }
 
 const SCENARIO: &str = "title = \"t\"\npolicy = \"hold\"\nduration_s = 0.2\n";
+const FLIES: &str = "[[expect]]\nreaches-pose = { x_m = 9, y_m = 0, heading_deg = 0, within_m = 1, within_deg = 9 }\n";
 
 #[test]
 fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
@@ -107,4 +108,19 @@ fn a_full_disk_is_named_with_the_file_and_costs_no_report() {
     let talk = String::from_utf8(output.stderr).unwrap();
     assert!(talk.contains("s.svg: cannot write: No space left"), "{talk}");
     assert!(String::from_utf8(output.stdout).unwrap().contains("s passed"), "the report was made");
+}
+
+#[test]
+fn a_reader_that_goes_away_takes_no_verdict_with_it() {
+    let folder = folder_with(&[("s.toml", &format!("{SCENARIO}{FLIES}"))]);
+    let out = folder.path().join("out");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_xt28"))
+        .args(["run", &path(&folder, "s.toml"), "--out", out.to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert!(out.join("s.json").is_file() && out.join("s.svg").is_file());
 }

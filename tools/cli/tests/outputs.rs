@@ -1,6 +1,7 @@
 //! What a command writes: never over what it reads or what it wrote before, and nothing is lost for the sake of it.
 
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 fn xt28(arguments: &[&str]) -> Output {
@@ -123,4 +124,35 @@ fn a_reader_that_goes_away_takes_no_verdict_with_it() {
     drop(child.stdout.take());
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert!(out.join("s.json").is_file() && out.join("s.svg").is_file());
+}
+
+/// The headers of the sections that `xt28 config show` prints of a machine file, in order.
+fn sections(machine: &Path) -> (Vec<String>, String) {
+    let output = xt28(&["config", "show", "--machine", machine.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let headers = text.lines().filter(|line| line.starts_with('['));
+    (headers.map(|line| line[..=line.find(']').unwrap()].to_owned()).collect(), text)
+}
+
+#[test]
+fn every_section_in_force_is_shown_once_and_what_is_shown_is_a_machine_file() {
+    let whole = String::from_utf8(xt28(&["config", "show"]).stdout).unwrap();
+    let (vehicle, levelling) =
+        (whole.find("[vehicle]").unwrap(), whole.find("[levelling]").unwrap());
+    assert!(vehicle < levelling);
+    for text in [
+        whole.clone(),
+        whole[..levelling].to_owned(),
+        whole[..vehicle].to_owned(),
+        whole[..vehicle].to_owned() + &whole[levelling..],
+    ] {
+        let folder = folder_with(&[("m.toml", &text)]);
+        let (mut headers, shown) = sections(&folder.path().join("m.toml"));
+        headers.sort();
+        let of = |name: &str| headers.iter().filter(|header| *header == name).count();
+        assert_eq!((of("[masses]"), of("[vehicle]"), of("[levelling]")), (1, 1, 1), "{headers:?}");
+        fs::write(folder.path().join("shown.toml"), shown).unwrap();
+        sections(&folder.path().join("shown.toml"));
+    }
 }

@@ -156,3 +156,25 @@ fn every_section_in_force_is_shown_once_and_what_is_shown_is_a_machine_file() {
         sections(&folder.path().join("shown.toml"));
     }
 }
+
+#[test]
+fn a_drive_is_not_written_over_a_file_in_another_encoding() {
+    let folder = folder_with(&[]);
+    let latin = b"# f\xFCr mich\n";
+    fs::write(folder.path().join("straight.toml"), latin).unwrap();
+    fs::write(folder.path().join("mine.script.toml"), latin).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_xt28"))
+        .args(["gap", "drive", "straight"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    refusal(&["gap", "drive", "straight", "--out", &path(&folder, "mine.toml")]);
+    for name in ["straight.toml", "mine.script.toml"] {
+        assert_eq!(fs::read(folder.path().join(name)).unwrap(), latin);
+    }
+    // Nor is half a drive left where the other half cannot be written.
+    fs::create_dir(folder.path().join("taken.toml")).unwrap();
+    refusal(&["gap", "drive", "straight", "--out", &path(&folder, "taken.toml")]);
+    assert!(!folder.path().join("taken.script.toml").exists());
+}

@@ -178,3 +178,11 @@ fn a_drive_is_not_written_over_a_file_in_another_encoding() {
     refusal(&["gap", "drive", "straight", "--out", &path(&folder, "taken.toml")]);
     assert!(!folder.path().join("taken.script.toml").exists());
 }
+
+#[test]
+fn a_setting_that_is_given_twice_or_is_no_number_is_refused() {
+    let talk = refusal(&["effects", "arm-delay", "delay_s=0.1", "delay_s=0.2"]);
+    assert!(talk.contains("delay_s is given twice"), "{talk}");
+    let talk = refusal(&["effects", "arm-delay", "delay_s=nan"]);
+    assert!(talk.contains("`nan` is no number"), "{talk}");
+}

@@ -260,6 +260,16 @@ mod tests {
     }
 
     #[test]
+    fn of_what_it_passes_over_the_first_line_is_told() {
+        let log =
+            "(1.5) can0 123#55\n(1.6) can0 20000004#00\n(1.7) can0 123##1\n(1.8) can0 123#R\n";
+        let mut reader = Reader::new(log.as_bytes(), "a.log");
+        assert_eq!(reader.by_ref().count(), 1);
+        assert_eq!(reader.skipped(), Skipped { remote: 1, error: 1, fd: 1 });
+        assert_eq!((reader.skipped().total(), reader.skipped_line()), (3, Some(2)));
+    }
+
+    #[test]
     fn a_mark_before_the_first_line_is_no_part_of_it() {
         let log = format!("\u{FEFF}{LOG}");
         assert_eq!(Reader::new(log.as_bytes(), "a.log").filter(Result::is_ok).count(), 2);

@@ -69,7 +69,14 @@ mod tests {
             problem(&format!("[[expect]]\nstands-still = {{ {keys} }}"), 45.0)
                 .map_or_else(String::new, |(_, problem)| problem)
         };
-        for sound in ["below_m_s = 0.02", "from_s = 1, to_s = 45", "roll_deg = -5.0", "x_m = -3"] {
+        for sound in [
+            "below_m_s = 0.02",
+            "from_s = 1, to_s = 45",
+            "roll_deg = -5.0",
+            "x_m = -3",
+            "from_kn = 2, to_kn = 2",
+            "rise_s = [1.0, 1.0]",
+        ] {
             assert_eq!(of(sound), "", "{sound}");
         }
         for (keys, wanted) in [
@@ -77,6 +84,7 @@ mod tests {
             ("within_m = -1", "stands-still: within_m = -1 must be at least zero"),
             ("wheels = []", "stands-still: wheels = [] must name at least one"),
             ("to_s = 500", "stands-still: to_s = 500 must be within the run, 0 to 45"),
+            ("over_s = 46", "stands-still: over_s = 46 must be within the run, 0 to 45"),
             ("rise_s = [0.1, inf]", "stands-still: rise_s = inf must be finite"),
             ("from_kn = 9.5, to_kn = 2", "stands-still: from_kn = 9.5 must be at most to_kn = 2"),
             ("from = 0.3, below = 0.2", "stands-still: from = 0.3 must be at most below = 0.2"),

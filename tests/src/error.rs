@@ -7,6 +7,8 @@ use xt28_machine::MachineError;
 use xt28_sim::TerrainError;
 use xt28_sim::effects::OverlayError;
 
+use crate::places::line_at;
+
 /// Why a scenario was refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ScenarioError {
@@ -103,10 +105,10 @@ pub enum SetupError {
 impl ScenarioError {
     /// From what the TOML reader said of `text`.
     pub(crate) fn from_toml(error: &toml::de::Error, text: &str, path: &Path) -> Self {
-        let start = error.span().map_or(0, |span| span.start.min(text.len()));
+        let start = error.span().map_or(0, |span| span.start);
         Self::Parse {
             path: path.to_owned(),
-            line: text.as_bytes()[..start].iter().filter(|&&byte| byte == b'\n').count() + 1,
+            line: line_at(text, start),
             problem: error.message().replace('\n', " "),
         }
     }

@@ -144,8 +144,12 @@ fn whole(evidence: &Evidence<'_>) -> Vec<Finding> {
         .map_or_else(String::new, |fault| format!("first at {:.3} s: {}", fault.at_s, fault.what));
     // The last tick's frames end within the tick.
     let length = Bound::Near { value: scenario.duration_s, tolerance: 0.5 };
+    let covers = "log covers the run";
     vec![
-        Finding::of("log covers the run", trace.end_s, length, "s"),
+        match trace.frames {
+            0 => Finding::missing(covers, length, "s", "no frame in the log"),
+            _ => Finding::of(covers, trace.end_s, length, "s"),
+        },
         Finding::of("frames that do not decode", faults, Bound::AtMost(0.0), "").noting(first),
     ]
 }

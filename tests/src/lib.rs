@@ -17,6 +17,7 @@ mod finding;
 mod ground;
 mod lockstep;
 mod picture;
+mod places;
 mod recording;
 mod report;
 mod scenario;

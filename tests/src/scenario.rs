@@ -9,6 +9,7 @@ use xt28_sim::effects::Entry;
 
 use crate::cab_script::{self, CabScript};
 use crate::expect::sense;
+use crate::places::Places;
 use crate::{Event, Expectation, Ground, Incident, ScenarioError};
 
 /// One scenario as its TOML file states it. Units are in the keys.
@@ -120,8 +121,9 @@ impl Scenario {
             })?;
             scenario.script = Some(Script { path: script, text });
         }
-        if let Some(file) = &scenario.operator {
-            let cab = CabScript::read(&beside.join(file), &read);
+        if let Some(file) = &mut scenario.operator {
+            *file = beside.join(&file);
+            let cab = CabScript::read(file, &read);
             scenario.cab = Some(cab.map_err(|source| ScenarioError::Operator {
                 operator_at: format!("{}:{}", path.display(), line_of(text, "operator")),
                 source,
@@ -141,40 +143,53 @@ impl Scenario {
     }
 
     fn check(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
-        let refuse = |key: &'static str, problem: String| {
-            let (path, line) = (path.to_owned(), line_of(text, key));
-            Err(ScenarioError::Value { path, line, problem: format!("{key} {problem}") })
+        let refuse = |line: usize, problem: String| {
+            Err(ScenarioError::Value { path: path.to_owned(), line, problem })
         };
         if !(self.duration_s > 0.0 && self.duration_s <= DURATION_MAX_S) {
-            let problem = format!("= {} must be above 0 and at most 3600", self.duration_s);
-            return refuse("duration_s", problem);
-        }
-        if let Some(event) = self.events.iter().find(|e| !(0.0..=self.duration_s).contains(&e.at_s))
-        {
             let problem =
-                format!("= {} lies outside the run, 0 to {}", event.at_s, self.duration_s);
-            return refuse("at_s", problem);
+                format!("duration_s = {} must be above 0 and at most 3600", self.duration_s);
+            return refuse(line_of(text, "duration_s"), problem);
         }
-        if let Some(problem) = self.faults.iter().find_map(|fault| fault.check().err()) {
-            return refuse("[[fault]]", format!(": {problem}"));
+        if let Some((line, problem)) = self.mishap_problem(text) {
+            return refuse(line, problem);
         }
         if self.operator.is_some() && self.profile == Profile::Paper {
-            return refuse(
-                "operator",
-                "needs profile = \"2016\": no cab is heard otherwise".into(),
-            );
+            let problem = "operator needs profile = \"2016\": no cab is heard otherwise";
+            return refuse(line_of(text, "operator"), problem.to_owned());
         }
         self.check_effects(text, path)?;
-        if let Some((name, problem)) = sense::problem(text, self.duration_s) {
-            let (path, line) = (path.to_owned(), line_of(text, &name));
-            let problem = format!("{name}: {problem}");
-            return Err(ScenarioError::Value { path, line, problem });
+        if let Some((line, problem)) = sense::problem(text, self.duration_s) {
+            return refuse(line, problem);
         }
         self.terrain.spec.check().map_err(|fault| ScenarioError::Value {
             path: path.to_owned(),
             line: fault.line_in(text, "terrain."),
             problem: format!("[terrain.{}]: {}", fault.table, fault.problem),
         })
+    }
+
+    /// The first event or fault that makes no sense, or that would come after the run: its line, and what is
+    /// wrong.
+    fn mishap_problem(&self, text: &str) -> Option<(usize, String)> {
+        let places = Places::of(text);
+        let outside = |key: &str, at_s: f64| {
+            let run = format!("the run, 0 to {}", self.duration_s);
+            let is_outside = !(0.0..=self.duration_s).contains(&at_s);
+            is_outside.then(|| format!("{key} = {at_s} lies outside {run}"))
+        };
+        let of_event = |(index, event): (usize, &Event)| {
+            Some((places.event(index, "at_s", text), outside("at_s", event.at_s)?))
+        };
+        let of_fault = |(index, fault): (usize, &SensorFault)| match fault.check() {
+            Ok(()) => Some((places.fault(index, "from_s", text), outside("from_s", fault.from_s)?)),
+            Err(problem) => {
+                Some((places.fault(index, "sensor", text), format!("[[fault]]: {problem}")))
+            }
+        };
+        let mut events = self.events.iter().enumerate();
+        let mut faults = self.faults.iter().enumerate();
+        events.find_map(of_event).or_else(|| faults.find_map(of_fault))
     }
 
     /// Refuses effects that this profile does not hear of, and those that would do nothing.

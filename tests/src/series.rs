@@ -41,6 +41,24 @@ impl<T> Series<T> {
         &self.0[from..to.max(from)]
     }
 
+    /// The samples from `from_s` to `to_s`, where none of that time goes by without one; else a note that `what`
+    /// was lacking, and when. What nobody looked at has not been seen to hold.
+    pub(crate) fn covering(
+        &self,
+        from_s: f64,
+        to_s: f64,
+        what: &str,
+    ) -> Result<&[Sample<T>], String> {
+        let samples = self.between(from_s, to_s);
+        let starts_s = std::iter::once(from_s).chain(samples.iter().map(|sample| sample.at_s));
+        let ends_s = samples.iter().map(|sample| sample.at_s).chain([to_s]);
+        match starts_s.zip(ends_s).find(|(start_s, end_s)| end_s - start_s > SILENCE_S) {
+            Some((start_s, end_s)) => Err(format!("no {what} from {start_s:.2} to {end_s:.2} s")),
+            None if samples.is_empty() => Err(format!("no {what} from {from_s:.2} to {to_s:.2} s")),
+            None => Ok(samples),
+        }
+    }
+
     /// The newest sample at or before `at_s`: what a listener knew then.
     #[must_use]
     pub fn known_at(&self, at_s: f64) -> Option<&Sample<T>> {
@@ -53,6 +71,10 @@ impl<T> Series<T> {
         self.0.last()
     }
 }
+
+/// The longest time without a sample that still counts as looked at, s: far more than a busy host holds a
+/// program up, and as much as a log may lack of its run.
+const SILENCE_S: f64 = 0.5;
 
 /// Mean of `value` over samples, `None` of none.
 pub(crate) fn mean<T>(samples: &[Sample<T>], value: impl Fn(&T) -> f64) -> Option<f64> {
@@ -127,6 +149,21 @@ mod tests {
         assert!(series.between(20.0, 30.0).is_empty());
         assert_eq!(series.known_at(0.55).unwrap().value, 2.75);
         assert_eq!(series.known_at(-0.1), None);
+    }
+
+    #[test]
+    fn a_window_is_covered_where_no_half_second_lacks_a_sample() {
+        let mut series = Series::default();
+        for at_s in [1.0, 1.5, 2.0, 3.0, 3.25] {
+            series.push(at_s, at_s);
+        }
+        let covering = |from_s, to_s| series.covering(from_s, to_s, "frame").map(<[_]>::len);
+        assert_eq!(covering(0.5, 2.5), Ok(3));
+        assert_eq!(covering(3.0, 3.75), Ok(2));
+        assert_eq!(covering(0.25, 2.0), Err("no frame from 0.25 to 1.00 s".to_owned()));
+        assert_eq!(covering(1.0, 3.25), Err("no frame from 2.00 to 3.00 s".to_owned()));
+        assert_eq!(covering(3.0, 4.0), Err("no frame from 3.25 to 4.00 s".to_owned()));
+        assert_eq!(covering(2.25, 2.5), Err("no frame from 2.25 to 2.50 s".to_owned()));
     }
 
     #[test]

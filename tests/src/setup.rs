@@ -11,7 +11,7 @@ use xt28_sim::Terrain;
 use xt28_sim::effects::Overlay;
 
 use crate::trace::Trace;
-use crate::{Evidence, Finding, Scenario, Script, SetupError, Truth};
+use crate::{Evidence, Finding, RunError, Scenario, Script, SetupError, Truth};
 
 /// All that a run is made of, on either kind of bus.
 #[derive(Clone, Debug)]
@@ -76,6 +76,26 @@ impl Setup {
             }
             None => policy::from_spec(&self.scenario.policy, &self.machine),
         }
+    }
+
+    /// Refuses what would be refused at the start of a run, before a file is opened for it.
+    ///
+    /// # Errors
+    /// [`RunError::Policy`], [`RunError::Effects`].
+    pub fn ensure_startable(&self) -> Result<(), RunError> {
+        let policy_at = || self.scenario.policy_at.clone();
+        self.policy().map_err(|source| RunError::Policy { policy_at: policy_at(), source })?;
+        self.overlay.effects(&self.machine)?;
+        Ok(())
+    }
+
+    /// The files beside the scenario's own that a run of it reads.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let scenario = &self.scenario;
+        let script = scenario.script.as_ref().map(|script| &script.path);
+        let named = [&scenario.machine, &scenario.operator, &scenario.terrain.file];
+        let maps = scenario.terrain.spec.height_map.iter().map(|map| &map.file);
+        named.into_iter().flatten().chain(script).chain(maps).map(PathBuf::as_path)
     }
 
     /// The machine file, where one is named; otherwise the built-in machine runs.

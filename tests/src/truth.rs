@@ -54,22 +54,24 @@ impl Truth {
     ///
     /// # Errors
     /// [`TruthError`], with file and line.
-    pub fn read(csv: impl BufRead, name: &str, start_s: f64) -> Result<Self, TruthError> {
+    pub fn read(mut csv: impl BufRead, name: &str, start_s: f64) -> Result<Self, TruthError> {
         let mut truth = Self::default();
         let mut columns: Vec<String> = Vec::new();
-        let mut lines = csv.lines().enumerate().peekable();
-        while let Some((index, text)) = lines.next() {
-            let line = index + 1;
-            let text =
-                text.map_err(|source| TruthError::Read { name: name.to_owned(), line, source })?;
+        let mut text = String::new();
+        for line in 1.. {
+            text.clear();
+            csv.read_line(&mut text).map_err(|source| TruthError::Read {
+                name: name.to_owned(),
+                line,
+                source,
+            })?;
+            // Without its line feed a line was cut, even where its last digits make sense: there may be more.
+            let Some(text) = text.strip_suffix('\n') else { break };
             if columns.is_empty() {
                 columns = text.split(',').map(str::to_owned).collect();
                 continue;
             }
             let fields: Vec<&str> = text.split(',').collect();
-            if fields.len() < columns.len() && lines.peek().is_none() {
-                break;
-            }
             let number = |column: &str| {
                 let at = columns.iter().position(|c| c == column);
                 at.and_then(|at| fields.get(at)?.parse::<f64>().ok()).ok_or_else(|| {
@@ -129,8 +131,14 @@ mod tests {
     #[test]
     fn a_cut_last_line_is_left_out_and_a_bad_one_is_named() {
         let csv = csv();
-        let cut = Truth::read(&csv.as_bytes()[..csv.len() - 12], "t.csv", 0.0).unwrap();
-        assert_eq!(cut.ground_force_n.samples().len(), 2);
+        // Cut within the last number, before it, and within an earlier one.
+        for cut in [1, 2, 4, 12] {
+            let cut = Truth::read(&csv.as_bytes()[..csv.len() - cut], "t.csv", 0.0).unwrap();
+            assert_eq!(cut.ground_force_n.samples().len(), 2);
+        }
+        let short = csv.replacen(",700\n", "\n", 1);
+        let error = Truth::read(short.as_bytes(), "t.csv", 0.0).unwrap_err().to_string();
+        assert!(error.starts_with("t.csv:2: no number in column chassis_n"), "{error}");
         let bad = csv.replacen("\n0.010", "\nten", 1);
         let error = Truth::read(bad.as_bytes(), "t.csv", 0.0).unwrap_err().to_string();
         assert!(error.starts_with("t.csv:3: no number in column time_s"), "{error}");

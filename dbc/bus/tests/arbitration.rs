@@ -242,6 +242,19 @@ fn two_nodes_with_one_identifier_are_reported() {
 }
 
 #[test]
+fn of_three_nodes_with_one_identifier_the_first_two_are_named() {
+    let mut bus = VirtualBus::new(Bitrate::MBIT_1);
+    let [a, b, c] = ["a", "b", "c"].map(|name| bus.attach(name));
+    for node in [c, b, a] {
+        bus.send(node, SimTime::ZERO, &frame(0x123, &[]));
+    }
+    bus.advance(SimTime::from_millis(1));
+    let collisions: Vec<_> = bus.collisions().collect();
+    // Three arbitrate, then the two that lost.
+    assert_eq!((collisions[0].nodes, collisions[0].count), ((a, b), 2));
+}
+
+#[test]
 fn a_saturated_bus_is_at_full_load_and_starves_the_less_urgent() {
     let mut bus = VirtualBus::new(Bitrate::KBIT_250);
     let [babbler, victim] = ["babbler", "victim"].map(|name| bus.attach(name));

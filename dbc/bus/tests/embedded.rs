@@ -7,7 +7,7 @@ use embedded_can::{ErrorKind, Frame as _, Id, StandardId, blocking};
 use xt28_bus::embedded::{
     BlockingController, CanFrame, Controller, ControllerError, Driver, DriverError,
 };
-use xt28_bus::{Bitrate, Bus, BusState, VirtualBus};
+use xt28_bus::{Bitrate, Bus, BusState, Received, VirtualBus};
 use xt28_dbc::{CanId, Frame};
 use xt28_machine::SimTime;
 
@@ -57,6 +57,48 @@ fn blocking_code_lets_time_pass_until_a_frame_comes() {
     assert_eq!(now, SimTime::from_millis(40));
     bus.advance(SimTime::from_millis(50));
     assert!(bus.receive(ours).unwrap().at > SimTime::from_millis(40));
+}
+
+/// A bus that keeps when it was sent what.
+#[derive(Default)]
+struct Notebook(Vec<(SimTime, Frame)>, VecDeque<Received>);
+
+impl Bus for Notebook {
+    type Error = Infallible;
+
+    fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Infallible> {
+        self.0.push((now, *frame));
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<Option<Received>, Infallible> {
+        Ok(self.1.pop_front())
+    }
+
+    fn state(&self) -> BusState {
+        BusState::ErrorActive
+    }
+}
+
+#[test]
+fn blocking_code_sends_at_the_time_to_which_it_waited() {
+    let mut controller = BlockingController::new(Notebook::default(), |bus| {
+        bus.1.push_back(Received { at: SimTime::from_millis(3), frame: frame(1) });
+        Ok::<_, Infallible>(SimTime::from_millis(4))
+    });
+    blocking::Can::receive(&mut controller).unwrap();
+    blocking::Can::transmit(&mut controller, &CanFrame::Data(frame(2))).unwrap();
+    let sent = &controller.controller().bus().0;
+    assert_eq!(sent, &[(SimTime::from_millis(4), frame(2))]);
+}
+
+#[test]
+fn an_identifier_that_their_traits_cannot_show_is_passed_over() {
+    let mut notebook = Notebook::default();
+    let at = SimTime::ZERO;
+    notebook.1 = [0x800, 0x7FF].map(|id| Received { at, frame: frame(id) }).into();
+    let heard = embedded_can::nb::Can::receive(&mut Controller::new(notebook)).unwrap();
+    assert_eq!(heard, CanFrame::Data(frame(0x7FF)));
 }
 
 #[test]
@@ -142,6 +184,22 @@ fn frames_of_one_identifier_leave_in_the_order_sent() {
 }
 
 #[test]
+fn a_frame_that_made_room_is_next_again_before_later_ones() {
+    let mut bus = Driver::new(Mailboxes::default());
+    let sent = [(0x300, 1), (0x300, 2), (0x100, 0), (0x050, 0), (0x300, 3)];
+    for (id, number) in sent {
+        let frame = Frame::new(CanId::Standard(id), &[number]).unwrap();
+        bus.send(SimTime::ZERO, &frame).unwrap();
+    }
+    let mut left = Vec::new();
+    while let Some(frame) = bus.driver().leave() {
+        left.push(frame.data()[0]);
+        bus.flush();
+    }
+    assert_eq!(left, [0, 0, 1, 2, 3]);
+}
+
+#[test]
 fn a_driver_that_takes_nothing_is_an_error_before_anything_is_lost() {
     let mut bus = Driver::new(Mailboxes::default());
     let mut sent = 0;
@@ -152,6 +210,7 @@ fn a_driver_that_takes_nothing_is_an_error_before_anything_is_lost() {
         }
     };
     assert_eq!(error, DriverError::BacklogFull { frames: sent - Mailboxes::COUNT });
+    assert_eq!((sent - Mailboxes::COUNT, bus.backlog()), (256, 256));
 }
 
 #[test]
@@ -166,4 +225,7 @@ fn errors_of_their_driver_are_counted_and_remote_frames_passed_over() {
     assert_eq!((heard.at, heard.frame), (SimTime::from_millis(7), frame(1)));
     assert_eq!((bus.faults()[&ErrorKind::Stuff], bus.remote()), (1, 1));
     assert_eq!(bus.state(), BusState::ErrorPassive);
+    bus.send(SimTime::from_millis(9), &frame(2)).unwrap();
+    bus.driver().heard = [Ok(CanFrame::Data(frame(1)))].into();
+    assert_eq!(bus.receive().unwrap().unwrap().at, SimTime::from_millis(9));
 }

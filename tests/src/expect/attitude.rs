@@ -19,21 +19,29 @@ pub struct RollPeak {
 
 impl RollPeak {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
-        let rolls = evidence.trace.attitude.samples();
+        let trace = evidence.trace;
+        let rolls = trace.attitude.covering(0.0, trace.end_s, "Attitude frame");
         let peak_bound = Bound::Between(self.from_deg, self.to_deg);
         let end_bound = Bound::Near { value: 0.0, tolerance: self.end_within_deg };
         let (what_peak, what_end) = ("greatest roll", "roll at the end");
         let by_size = |a: &f64, b: &f64| a.abs().total_cmp(&b.abs());
+        let missing = |note: &str| {
+            vec![
+                Finding::missing(what_peak, peak_bound, "deg", note),
+                Finding::missing(what_end, end_bound, "deg", note),
+            ]
+        };
+        let rolls = match rolls {
+            Ok(rolls) => rolls,
+            Err(note) => return missing(&note),
+        };
         let degrees = || rolls.iter().map(|s| s.value.roll_rad.to_degrees());
         match (degrees().max_by(by_size), degrees().next_back()) {
             (Some(peak_deg), Some(end_deg)) => vec![
                 Finding::of(what_peak, peak_deg, peak_bound, "deg"),
                 Finding::of(what_end, end_deg, end_bound, "deg"),
             ],
-            _ => vec![
-                Finding::missing(what_peak, peak_bound, "deg", "no Attitude frame"),
-                Finding::missing(what_end, end_bound, "deg", "no Attitude frame"),
-            ],
+            _ => missing("no Attitude frame"),
         }
     }
 }

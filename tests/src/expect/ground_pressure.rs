@@ -29,24 +29,27 @@ impl EvenGroundPressure {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
         let Evidence { trace, machine, truth, .. } = evidence;
         let wanted = Bound::Between(self.from, self.below);
-        let finding = |what: &str, deviations: &[f64]| {
+        let finding = |what: &str, deviations: Result<Vec<f64>, String>| {
+            let deviations = match deviations {
+                Ok(deviations) => deviations,
+                Err(note) => return Finding::missing(what, wanted, "", note),
+            };
             let Some(worst) = deviations.iter().copied().reduce(f64::max) else {
-                return Finding::missing(what, wanted, "", "no load and stroke in the window");
+                return Finding::missing(what, wanted, "", "no stroke in the window");
             };
             #[allow(clippy::cast_precision_loss)]
             let mean = deviations.iter().sum::<f64>() / deviations.len() as f64;
             Finding::of(what, mean, wanted, "").noting(format!("at most {worst:.3}"))
         };
-        let loads = trace.cylinder_load_n.between(self.from_s, self.to_s);
-        let seen: Vec<f64> = loads
-            .iter()
-            .filter_map(|sample| wheel_loads_n(machine, trace, sample))
-            .map(|force_n| deviation(&force_n))
-            .collect();
-        let mut findings = vec![finding("deviation of wheel forces, from cylinders", &seen)];
+        let loads = trace.cylinder_load_n.covering(self.from_s, self.to_s, "cylinder load");
+        let seen = loads.map(|loads| {
+            let forces_n = loads.iter().filter_map(|sample| wheel_loads_n(machine, trace, sample));
+            forces_n.map(|force_n| deviation(&force_n)).collect()
+        });
+        let mut findings = vec![finding("deviation of wheel forces, from cylinders", seen)];
         if let Some(truth) = truth {
-            let forces = truth.ground_force_n.between(self.from_s, self.to_s);
-            findings.push(finding("deviation of wheel forces, true", &smoothed(forces)));
+            let forces = truth.ground_force_n.covering(self.from_s, self.to_s, "truth");
+            findings.push(finding("deviation of wheel forces, true", forces.map(smoothed)));
         }
         findings
     }

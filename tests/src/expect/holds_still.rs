@@ -22,7 +22,11 @@ impl HoldsStill {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
         let what = format!("greatest change of a stroke, {} to {} s", self.from_s, self.to_s);
         let wanted = Bound::AtMost(self.within_mm);
-        let strokes = evidence.trace.stroke_m.between(self.from_s, self.to_s);
+        let stroke_m = &evidence.trace.stroke_m;
+        let strokes = match stroke_m.covering(self.from_s, self.to_s, "stroke") {
+            Ok(strokes) => strokes,
+            Err(note) => return vec![Finding::missing(what, wanted, "mm", note)],
+        };
         let change_mm = |wheel: Wheel| {
             let of = |pick: fn(f64, f64) -> f64| {
                 strokes.iter().map(|s| s.value[wheel]).reduce(pick).unwrap_or(f64::NAN)

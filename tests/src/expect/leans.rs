@@ -23,10 +23,11 @@ impl Leans {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
         let what = format!("mean roll, {} to {} s", self.from_s, self.to_s);
         let wanted = Bound::Near { value: self.roll_deg, tolerance: self.within_deg };
-        let rolls = evidence.trace.attitude.between(self.from_s, self.to_s);
-        if rolls.is_empty() {
-            return vec![Finding::missing(what, wanted, "deg", "no Attitude frame in that time")];
-        }
+        let attitude = &evidence.trace.attitude;
+        let rolls = match attitude.covering(self.from_s, self.to_s, "Attitude frame") {
+            Ok(rolls) => rolls,
+            Err(note) => return vec![Finding::missing(what, wanted, "deg", note)],
+        };
         #[allow(clippy::cast_precision_loss)] // hundreds
         let count = rolls.len() as f64;
         let mean_rad = rolls.iter().map(|s| s.value.roll_rad).sum::<f64>() / count;

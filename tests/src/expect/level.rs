@@ -23,10 +23,15 @@ pub struct StaysLevel {
 
 impl StaysLevel {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
-        let samples = evidence.trace.attitude.between(self.from_s, self.to_s);
+        let attitude = &evidence.trace.attitude;
+        let samples = attitude.covering(self.from_s, self.to_s, "Attitude frame");
         let greatest = |what: &str, limit_deg: f64, of: fn(&Attitude) -> f64| {
             let what = format!("greatest {what}, {} to {} s", self.from_s, self.to_s);
             let wanted = Bound::AtMost(limit_deg);
+            let samples = match &samples {
+                Ok(samples) => *samples,
+                Err(note) => return Finding::missing(what, wanted, "deg", note),
+            };
             match extent(samples, of) {
                 Some((low, high)) => {
                     let (low_deg, high_deg) = (low.to_degrees(), high.to_degrees());

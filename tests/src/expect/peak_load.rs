@@ -26,7 +26,11 @@ impl PeakLoad {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
         let wanted = Bound::Between(self.from_kn, self.to_kn);
         let what = "greatest load of a cylinder";
-        let loads = evidence.trace.cylinder_load_n.between(self.from_s, self.to_s);
+        let load_n = &evidence.trace.cylinder_load_n;
+        let loads = match load_n.covering(self.from_s, self.to_s, "cylinder load") {
+            Ok(loads) => loads,
+            Err(note) => return vec![Finding::missing(what, wanted, "kN", note)],
+        };
         let all =
             loads.iter().flat_map(|s| Wheel::ALL.map(|wheel| (s.value[wheel], wheel, s.at_s)));
         vec![match all.max_by(|a, b| a.0.total_cmp(&b.0)) {

@@ -3,14 +3,14 @@
 
 use toml::{Table, Value};
 
+use crate::places::{Places, line_at};
+
 /// The first expectation of a scenario's `text` whose numbers make no sense in a run of `duration_s` s: its
-/// name, and what is wrong.
-pub(crate) fn problem(text: &str, duration_s: f64) -> Option<(String, String)> {
-    let scenario: Table = toml::from_str(text).ok()?;
-    let expectations = scenario.get("expect")?.as_array()?.iter().filter_map(Value::as_table);
-    expectations.flatten().find_map(|(name, keys)| {
+/// line, and what is wrong.
+pub(crate) fn problem(text: &str, duration_s: f64) -> Option<(usize, String)> {
+    Places::of(text).expect.iter().flatten().find_map(|(name, keys)| {
         let problem = of_keys(keys.as_table()?, duration_s)?;
-        Some((name.clone(), problem))
+        Some((line_at(text, name.span().start), format!("{}: {problem}", name.get_ref())))
     })
 }
 
@@ -23,12 +23,19 @@ fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
             Value::Array(list) => list.iter().filter_map(number).collect(),
             one => number(one).into_iter().collect::<Vec<_>>(),
         };
-        numbers.into_iter().find_map(|value| of_number(keys, (key, value), duration_s))
+        let sense = |value: &f64| of_number(keys, (key, *value), duration_s);
+        if let Some(problem) = numbers.iter().find_map(sense) {
+            return Some(problem);
+        }
+        // A list of numbers is least and greatest.
+        let falls = numbers.windows(2).find(|pair| pair[0] > pair[1])?;
+        Some(format!("{key} = [{}, {}] must not fall", falls[0], falls[1]))
     })
 }
 
 fn of_number(keys: &Table, (key, value): (&str, f64), duration_s: f64) -> Option<String> {
-    const NOT_BELOW_ZERO: [&str; 5] = ["within", "below", "end_within", "overshoot", "steady"];
+    const NOT_BELOW_ZERO: [&str; 6] =
+        ["within", "below", "end_within", "overshoot", "steady", "at_most"];
     let must = |what: String| Some(format!("{key} = {value} must be {what}"));
     if !value.is_finite() {
         return must("finite".to_owned());
@@ -39,9 +46,12 @@ fn of_number(keys: &Table, (key, value): (&str, f64), duration_s: f64) -> Option
     if ["from_s", "to_s", "over_s"].contains(&key) && !(0.0..=duration_s).contains(&value) {
         return must(format!("within the run, 0 to {duration_s}"));
     }
-    let to = key.strip_prefix("from").map(|unit| format!("to{unit}"))?;
-    let end = keys.get(&to).and_then(number)?;
-    if value > end { must(format!("at most {to} = {end}")) } else { None }
+    let unit = key.strip_prefix("from")?;
+    let limits = [format!("to{unit}"), format!("below{unit}")];
+    limits.iter().find_map(|limit| {
+        let end = keys.get(limit).and_then(number)?;
+        if value > end { must(format!("at most {limit} = {end}")) } else { None }
+    })
 }
 
 #[allow(clippy::cast_precision_loss)] // Nobody writes such integers.
@@ -57,9 +67,16 @@ mod tests {
     fn a_number_that_no_run_can_meet_is_found() {
         let of = |keys: &str| {
             problem(&format!("[[expect]]\nstands-still = {{ {keys} }}"), 45.0)
-                .map_or_else(String::new, |(name, problem)| format!("{name}: {problem}"))
+                .map_or_else(String::new, |(_, problem)| problem)
         };
-        for sound in ["below_m_s = 0.02", "from_s = 1, to_s = 45", "roll_deg = -5.0", "x_m = -3"] {
+        for sound in [
+            "below_m_s = 0.02",
+            "from_s = 1, to_s = 45",
+            "roll_deg = -5.0",
+            "x_m = -3",
+            "from_kn = 2, to_kn = 2",
+            "rise_s = [1.0, 1.0]",
+        ] {
             assert_eq!(of(sound), "", "{sound}");
         }
         for (keys, wanted) in [
@@ -67,8 +84,12 @@ mod tests {
             ("within_m = -1", "stands-still: within_m = -1 must be at least zero"),
             ("wheels = []", "stands-still: wheels = [] must name at least one"),
             ("to_s = 500", "stands-still: to_s = 500 must be within the run, 0 to 45"),
+            ("over_s = 46", "stands-still: over_s = 46 must be within the run, 0 to 45"),
             ("rise_s = [0.1, inf]", "stands-still: rise_s = inf must be finite"),
             ("from_kn = 9.5, to_kn = 2", "stands-still: from_kn = 9.5 must be at most to_kn = 2"),
+            ("from = 0.3, below = 0.2", "stands-still: from = 0.3 must be at most below = 0.2"),
+            ("at_most_kn = -1", "stands-still: at_most_kn = -1 must be at least zero"),
+            ("rise_s = [1.2, 0.9]", "stands-still: rise_s = [1.2, 0.9] must not fall"),
         ] {
             assert_eq!(of(keys), wanted);
         }

@@ -28,16 +28,18 @@ impl CarriesWeight {
         let weight_kn = machine.mass_kg() * GRAVITY_M_S2 / N_PER_KN;
         let tolerance = weight_kn * self.within_percent / 100.0;
         let wanted = Bound::Near { value: weight_kn, tolerance };
-        let finding = |what: &str, sum_n: Option<f64>| match sum_n {
-            Some(sum_n) => Finding::of(what, sum_n / N_PER_KN, wanted, "kN"),
-            None => Finding::missing(what, wanted, "kN", "no load and stroke in the window"),
+        let finding = |what: &str, sum_n: Result<Option<f64>, String>| match sum_n {
+            Ok(Some(sum_n)) => Finding::of(what, sum_n / N_PER_KN, wanted, "kN"),
+            Ok(None) => Finding::missing(what, wanted, "kN", "no stroke in the window"),
+            Err(note) => Finding::missing(what, wanted, "kN", note),
         };
-        let loads = trace.cylinder_load_n.between(self.from_s, self.to_s);
-        let sum_n = mean_of(loads, |sample| wheel_loads_n(machine, trace, sample).map(|n| n.sum()));
+        let loads = trace.cylinder_load_n.covering(self.from_s, self.to_s, "cylinder load");
+        let sum_of = |sample: &_| wheel_loads_n(machine, trace, sample).map(|n| n.sum());
+        let sum_n = loads.map(|loads| mean_of(loads, sum_of));
         let mut findings = vec![finding("sum of wheel loads, from cylinders", sum_n)];
         if let Some(truth) = truth {
-            let forces = truth.ground_force_n.between(self.from_s, self.to_s);
-            let sum_n = mean(forces, PerWheel::sum);
+            let forces = truth.ground_force_n.covering(self.from_s, self.to_s, "truth");
+            let sum_n = forces.map(|forces| mean(forces, PerWheel::sum));
             findings.push(finding("sum of wheel loads, true", sum_n));
         }
         findings

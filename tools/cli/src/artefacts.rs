@@ -4,14 +4,17 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use xt28_scenarios::{Picture, Recording, Report, Setup};
+use xt28_scenarios::{Picture, Recording, Report, RunError, Setup};
 
 use crate::Failure;
+use crate::files::{Outputs, refusal, write};
 
 /// Where a run's files go.
 #[derive(Debug)]
 pub(crate) struct Artefacts {
     log: Option<PathBuf>,
+    /// The option that the log is written for.
+    log_option: &'static str,
     folder: Option<PathBuf>,
     name: String,
 }
@@ -32,6 +35,7 @@ impl Artefacts {
         let beside = out.map(|out| out.join(format!("{name}.log")));
         Ok(Self {
             log: record.map(Path::to_owned).or(beside),
+            log_option: if record.is_some() { "--record" } else { OUT },
             folder: out.map(Path::to_owned),
             name: name.to_owned(),
         })
@@ -45,8 +49,40 @@ impl Artefacts {
     /// A writer to the log; to nowhere if it is not kept.
     pub(crate) fn log_writer(&self) -> Result<Box<dyn Write>, Failure> {
         match &self.log {
-            Some(path) => Ok(Box::new(BufWriter::new(create(path)?))),
+            Some(path) => {
+                let file = File::create(path).map_err(|error| refusal(path, &error))?;
+                Ok(Box::new(BufWriter::new(file)))
+            }
             None => Ok(Box::new(io::sink())),
+        }
+    }
+
+    /// The files by the option that each is written for.
+    fn files(&self) -> Vec<(&'static str, PathBuf)> {
+        let log = self.log.iter().cloned().map(|log| (self.log_option, log));
+        let beside = self.folder.iter().flat_map(|folder| {
+            ENDINGS.map(|ending| (OUT, folder.join(format!("{}.{ending}", self.name))))
+        });
+        log.chain(beside).collect()
+    }
+
+    /// Refuses files that are among those that the run reads, or one for two things, and those that could not
+    /// be written.
+    pub(crate) fn ensure_apart<'a>(
+        &self,
+        read: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<(), Failure> {
+        let files = self.files();
+        let read: Vec<&Path> = read.into_iter().collect();
+        let outputs = files.iter().map(|(option, path)| (*option, Some(path)));
+        Outputs::new(outputs).ensure_apart(read)
+    }
+
+    /// What went wrong with a run, with the log's name where that is what went wrong.
+    pub(crate) fn told(&self, error: RunError) -> Failure {
+        match (error, &self.log) {
+            (RunError::Log(error), Some(log)) => refusal(log, &error),
+            (error, _) => error.into(),
         }
     }
 
@@ -56,10 +92,12 @@ impl Artefacts {
         setup: &Setup,
         recording: &Recording,
         report: &Report,
-    ) -> Result<Vec<PathBuf>, Failure> {
-        let mut files: Vec<PathBuf> = self.log.iter().cloned().collect();
+    ) -> Result<(), Failure> {
+        if let Some(log) = &self.log {
+            eprintln!("wrote {}", log.display());
+        }
         let Some(folder) = &self.folder else {
-            return Ok(files);
+            return Ok(());
         };
         let picture = Picture {
             scenario: &setup.scenario,
@@ -68,18 +106,14 @@ impl Artefacts {
             trace: &recording.trace,
             findings: &report.findings,
         };
-        let texts = [("svg", picture.svg()), ("json", format!("{:#}\n", report.json()))];
-        for (ending, text) in texts {
-            let path = folder.join(format!("{}.{ending}", self.name));
-            create(&path)?.write_all(text.as_bytes())?;
-            files.push(path);
+        let texts = [picture.svg(), format!("{:#}\n", report.json())];
+        for (ending, text) in ENDINGS.into_iter().zip(texts) {
+            write(&folder.join(format!("{}.{ending}", self.name)), &text)?;
         }
-        Ok(files)
+        Ok(())
     }
 }
 
-fn create(path: &Path) -> Result<File, Failure> {
-    File::create(path).map_err(|error| {
-        format!("{}: cannot write: {error}; give another path", path.display()).into()
-    })
-}
+/// What is written beside the log, in this order.
+const ENDINGS: [&str; 2] = ["svg", "json"];
+const OUT: &str = "--out";

@@ -44,14 +44,24 @@ fn show(path: &Path) -> Result<(), Failure> {
     Machine::load(path)?;
     let text = std::fs::read_to_string(path)?;
     say!("{text}");
-    // The one section a file may leave out; what then holds is part of what is in force.
-    let optional = Machine::builtin_text().split_once("[vehicle]");
-    if let Some((_, section)) = optional.filter(|_| !has_section(&text, "[vehicle]")) {
-        say!("\n# Not in {}: the built-in values hold.\n[vehicle]{section}", path.display());
+    for header in OPTIONAL.into_iter().filter(|header| !has_section(&text, header)) {
+        if let Some(section) = builtin_section(header) {
+            say!("\n# Not in {}: the built-in values hold.\n{section}", path.display());
+        }
     }
     Ok(())
 }
 
+/// The sections that a file may leave out; what then holds is part of what is in force.
+const OPTIONAL: [&str; 2] = ["[vehicle]", "[levelling]"];
+
 fn has_section(text: &str, header: &str) -> bool {
-    text.lines().any(|line| line.trim_start().starts_with(header))
+    text.lines().any(|line| line.replace(' ', "").starts_with(header))
+}
+
+/// A section of the built-in machine file, its header included.
+fn builtin_section(header: &str) -> Option<&'static str> {
+    let text = Machine::builtin_text();
+    let section = &text[text.find(&format!("\n{header}"))? + 1..];
+    Some(section.find("\n[").map_or(section, |end| &section[..end]))
 }

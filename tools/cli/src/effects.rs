@@ -48,6 +48,11 @@ impl Effects {
             let names: Vec<_> = effect.parameters.iter().map(|p| p.name).collect();
             return Err(format!("{} has no `{key}`, but {}", effect.name, names.join(", ")).into());
         }
+        for (at, (key, _)) in self.settings.iter().enumerate() {
+            if self.settings[..at].iter().any(|(other, _)| other == key) {
+                return Err(format!("{key} is given twice; leave one out").into());
+            }
+        }
         let mut text = format!("# {}\n# {}\n", effect.meaning, effect.source);
         text += &format!("[[effect]]\nname = \"{}\"\n", effect.name);
         if effect.has_scope() {
@@ -79,8 +84,9 @@ impl Effects {
 /// A setting on the command line: `KEY=VALUE`.
 fn setting(text: &str) -> Result<(String, f64), String> {
     let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, as delay_s=0.2")?;
-    let value = value.trim().parse().map_err(|_| format!("`{value}` is no number"))?;
-    Ok((key.trim().to_owned(), value))
+    let number = value.trim().parse().ok().filter(|number: &f64| !number.is_nan());
+    let number = number.ok_or_else(|| format!("`{value}` is no number"))?;
+    Ok((key.trim().to_owned(), number))
 }
 
 fn as_json(effect: &Effect) -> serde_json::Value {

@@ -88,7 +88,8 @@ pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-fn refusal(path: &Path, error: &std::io::Error) -> Failure {
+/// What is said of a file that could not be written.
+pub(crate) fn refusal(path: &Path, error: &std::io::Error) -> Failure {
     let path = path.display();
     format!("{path}: cannot write: {error}; give a folder that exists and has room").into()
 }

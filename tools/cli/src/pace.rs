@@ -39,3 +39,21 @@ impl Pace {
         self.realtime.then_some(self.lateness_max.as_secs_f64() * 1e3)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_latest_tick_is_told_though_later_ones_were_in_time() {
+        let mut pace = Pace::start(true);
+        thread::sleep(Duration::from_millis(30));
+        pace.wait_until(Duration::ZERO);
+        pace.wait_until(pace.elapsed() + Duration::from_millis(1));
+        assert!(pace.elapsed() >= Duration::from_millis(31));
+        assert!(pace.lateness_max_ms().unwrap() >= 30.0);
+        let mut free = Pace::start(false);
+        free.wait_until(Duration::from_secs(3_600));
+        assert_eq!(free.lateness_max_ms(), None);
+    }
+}

@@ -192,6 +192,8 @@ fn gateway_arguments(
     add("--policy", policy);
     add("--gnss", gnss);
     add("--duration", duration_s.to_string());
+    // One that nobody lets arm, as beside the firmware of 2016, is on the bus to the end as well.
+    add("--arm-within", duration_s.to_string());
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());
     }
@@ -215,4 +217,23 @@ fn gnss_path(emulator: &mut Program) -> Result<String, Failure> {
         .map_err(|error| format!("ecu-emu said `{}`, not a line of JSON: {error}", line.trim()))?;
     let path = said["gnss"].as_str();
     Ok(path.ok_or_else(|| format!("ecu-emu said `{}`, without gnss", line.trim()))?.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_scenarios::Scenario;
+
+    use super::*;
+
+    #[test]
+    fn a_gateway_that_never_arms_does_not_leave_before_the_runs_end() {
+        let setup = Setup::new(Scenario::find("2016-pedal").unwrap(), None).unwrap();
+        let folder = Path::new("unused");
+        let arguments = gateway_arguments(&setup, "vcan0", "/dev/null".into(), folder).unwrap();
+        for option in ["--duration", "--arm-within"] {
+            let at = arguments.iter().position(|argument| argument == option).expect(option);
+            let until_s: f64 = arguments[at + 1].parse().unwrap();
+            assert!(until_s > setup.scenario.duration_s, "{option} {until_s}");
+        }
+    }
 }

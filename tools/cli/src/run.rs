@@ -9,7 +9,6 @@ use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario
 use xt28_sim::Solver;
 
 use crate::artefacts::Artefacts;
-use crate::files::no_input;
 use crate::pace::Pace;
 use crate::say::say;
 use crate::{Failure, Verdict, processes};
@@ -79,30 +78,24 @@ impl Run {
         if let Some(path) = &self.effects {
             setup.add_effects(path)?;
         }
-        if let Some(record) = &self.record {
-            let scenario = &setup.scenario;
-            let script = scenario.script.as_ref().map(|script| script.path.as_path());
-            let files = [self.effects.as_deref(), scenario.machine.as_deref(), script];
-            let read = files.into_iter().flatten().chain([Path::new(&self.scenario)]);
-            no_input(record, "--record", read)?;
-        }
+        setup.ensure_startable()?;
         let name = &setup.scenario.name;
         let artefacts = Artefacts::new(name, self.record.as_deref(), self.out.as_deref())?;
+        let own = self.effects.as_deref().into_iter().chain([Path::new(&self.scenario)]);
+        artefacts.ensure_apart(setup.files().chain(own))?;
         let (recording, cost) = if self.bus == VIRTUAL {
             self.lockstep(&setup, &artefacts)?
         } else {
             processes::run(&setup, &self.bus, &artefacts)?
         };
         let report = Report { cost: Some(cost), ..recording.report(&setup, &self.bus) };
-        let files = artefacts.write(&setup, &recording, &report)?;
+        // First, so that a folder without room costs no report.
         if self.json {
             say!("{:#}\n", report.json());
         } else {
             say!("{}", report.table());
         }
-        for file in files {
-            eprintln!("wrote {}", file.display());
-        }
+        artefacts.write(&setup, &recording, &report)?;
         Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
     }
 
@@ -113,14 +106,15 @@ impl Run {
         let (mut emulator, mut ticks) = (Duration::ZERO, 0_u32);
         loop {
             pace.wait_until(Duration::from_nanos(run.now().as_nanos()));
-            let Some(cost) = run.tick(&mut || pace.elapsed())? else {
+            let ticked = run.tick(&mut || pace.elapsed());
+            let Some(cost) = ticked.map_err(|error| artefacts.told(error))? else {
                 break;
             };
             emulator += cost.emulator;
             ticks += 1;
             bar.set_position(run.now().as_nanos() / 1_000_000);
         }
-        let recording = run.finish()?;
+        let recording = run.finish().map_err(|error| artefacts.told(error))?;
         let wall_s = pace.elapsed().as_secs_f64();
         bar.finish_and_clear();
         let steps = f64::from(ticks.max(1)) * f64::from(STEPS_PER_TICK);

@@ -1,4 +1,4 @@
-//! Data on stdout. Whoever reads it may go away, as `head` does: that ends the program, and is no failure.
+//! Data on stdout. Whoever reads it may go away, as `head` does: that is no failure, and no verdict either.
 
 use std::fmt;
 use std::io::{ErrorKind, Write as _, stdout};
@@ -10,11 +10,12 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Ends the program where nobody reads any more, or nothing can be written.
+/// Ends the program where nothing can be written. Where nobody reads any more it says nothing and goes on: files
+/// are still to be written, and the verdict is the exit status.
 pub(crate) fn print(text: fmt::Arguments<'_>) {
     match stdout().write_fmt(text) {
         Ok(()) => {}
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => exit(0),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(error) => {
             eprintln!("xt28: cannot write to stdout: {error}");
             exit(2);

@@ -19,7 +19,7 @@ fn short(expect: &str) -> (tempfile::TempDir, String) {
     (folder, path)
 }
 
-const STANDS: &str = "[[expect]]\nstands-still = { below_m_s = 0.1, over_s = 0.2 }\n";
+const STANDS: &str = "[[expect]]\nstands-still = { below_m_s = 0.1, over_s = 0.3 }\n";
 const FLIES: &str = "[[expect]]\nreaches-pose = { x_m = 9, y_m = 0, heading_deg = 0, within_m = 1, within_deg = 9 }\n";
 
 #[test]

@@ -135,13 +135,24 @@ fn parse_frame(word: &[u8]) -> Result<Body, BadLine> {
         Some(b'#') => Ok(Body::Fd),
         Some(b'R' | b'r') => match &body[1..] {
             [] | [b'0'..=b'8'] => Ok(Body::Remote),
+            [b'8', b'_', code] if is_above_eight(*code) => Ok(Body::Remote),
             _ => Err(BadLine::Data),
         },
         _ => parse_data(id, body).map(Body::Data).ok_or(BadLine::Data),
     }
 }
 
+/// A length code above eight, which candump -8 writes behind a frame of eight bytes, as `_E`: on classic CAN it is
+/// eight bytes as well (ISO 11898-1).
+const fn is_above_eight(code: u8) -> bool {
+    matches!(code, b'9' | b'A'..=b'F' | b'a'..=b'f')
+}
+
 fn parse_data(id: CanId, digits: &[u8]) -> Option<Frame> {
+    let digits = match digits {
+        [all @ .., b'_', code] if all.len() == 16 && is_above_eight(*code) => all,
+        all => all,
+    };
     let mut bytes = [0; 8];
     if !digits.len().is_multiple_of(2) {
         return None;
@@ -191,6 +202,19 @@ mod tests {
     }
 
     #[test]
+    fn a_length_code_above_eight_is_eight_bytes() {
+        for code in ['9', 'C', 'F', 'f'] {
+            let frame = data(&format!("(1.5) can0 123#1122334455667788_{code} R")).1;
+            assert_eq!(frame.data(), [0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88]);
+        }
+        assert_eq!(parse(b"(1.5) can0 123#R8_E"), Ok(Line::Remote));
+        for body in ["1122334455667788_8", "1122334455667788_G", "11_9", "_9", "R7_E", "R_E"] {
+            let line = format!("(1.5) can0 123#{body}");
+            assert_eq!(parse(line.as_bytes()), Err(BadLine::Data), "{line}");
+        }
+    }
+
+    #[test]
     fn knows_what_it_passes_over() {
         for (line, what) in [
             ("(0.1) can0 123#R", Line::Remote),
@@ -214,6 +238,7 @@ mod tests {
             ("(-1.5) can0 123#", BadLine::Time),
             ("(1.0000000001) can0 123#", BadLine::Time),
             ("(18446744073.709551616) can0 123#", BadLine::Time),
+            ("(18446744073709551620.5) can0 123#", BadLine::Time),
             ("(1.5)", BadLine::Interface),
             ("(1.5) 123#AB", BadLine::Interface),
             ("(1.5) can0", BadLine::Identifier),
@@ -222,6 +247,7 @@ mod tests {
             ("(1.5) can0 1234#AB", BadLine::Identifier),
             ("(1.5) can0 800#AB", BadLine::Identifier),
             ("(1.5) can0 80000000#AB", BadLine::Identifier),
+            ("(1.5) can0 60000004#AB", BadLine::Identifier),
             ("(1.5) can0 +23#AB", BadLine::Identifier),
             ("(1.5) can0 123#A", BadLine::Data),
             ("(1.5) can0 123#+A", BadLine::Data),

@@ -185,14 +185,15 @@ impl<R: BufRead> Reader<R> {
             Ok(_) if self.bytes.pop_if(|last| *last == b'\n').is_some() => return Ok(true),
             Ok(0) => false,
             Ok(_) if self.bytes.len() as u64 == LINE_BYTES => {
-                return Err(self.bad(BadLine::TooLong));
+                if !self.is_zeros_to_the_end()? {
+                    return Err(self.bad(BadLine::TooLong));
+                }
+                true
             }
             Ok(_) => true,
             // How a decompressor says that its input was cut.
             Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => true,
-            Err(source) => {
-                return Err(ReadError::Io { log: Arc::clone(&self.log), line: self.line, source });
-            }
+            Err(source) => return Err(self.unreadable(source)),
         };
         if cut && !self.accepts_cut {
             return Err(ReadError::Cut { log: Arc::clone(&self.log), line: self.line });
@@ -200,6 +201,31 @@ impl<R: BufRead> Reader<R> {
         self.cut_line = cut.then_some(self.line);
         self.line -= 1;
         Ok(false)
+    }
+
+    /// Whether nothing but zeros follows, as file systems leave behind a log whose machine lost power while it was
+    /// written. Nothing is a log that begins with them.
+    fn is_zeros_to_the_end(&mut self) -> Result<bool, ReadError> {
+        if self.line == 1 || self.bytes.last() != Some(&0) {
+            return Ok(false);
+        }
+        loop {
+            let zeros = match self.input.fill_buf() {
+                Ok(rest) if rest.iter().any(|byte| *byte != 0) => return Ok(false),
+                Ok(rest) => rest.len(),
+                Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => 0,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(source) => return Err(self.unreadable(source)),
+            };
+            if zeros == 0 {
+                return Ok(true);
+            }
+            self.input.consume(zeros);
+        }
+    }
+
+    fn unreadable(&self, source: io::Error) -> ReadError {
+        ReadError::Io { log: Arc::clone(&self.log), line: self.line, source }
     }
 
     fn bad(&self, what: BadLine) -> ReadError {
@@ -234,6 +260,16 @@ mod tests {
     }
 
     #[test]
+    fn of_what_it_passes_over_the_first_line_is_told() {
+        let log =
+            "(1.5) can0 123#55\n(1.6) can0 20000004#00\n(1.7) can0 123##1\n(1.8) can0 123#R\n";
+        let mut reader = Reader::new(log.as_bytes(), "a.log");
+        assert_eq!(reader.by_ref().count(), 1);
+        assert_eq!(reader.skipped(), Skipped { remote: 1, error: 1, fd: 1 });
+        assert_eq!((reader.skipped().total(), reader.skipped_line()), (3, Some(2)));
+    }
+
+    #[test]
     fn a_mark_before_the_first_line_is_no_part_of_it() {
         let log = format!("\u{FEFF}{LOG}");
         assert_eq!(Reader::new(log.as_bytes(), "a.log").filter(Result::is_ok).count(), 2);
@@ -262,6 +298,25 @@ mod tests {
         let mut reader = Reader::new(cut.as_bytes(), "a.log").accepting_cut();
         assert_eq!(reader.by_ref().filter_map(Result::ok).count(), 1);
         assert_eq!((reader.cut_line(), reader.line()), (Some(2), 1));
+    }
+
+    #[test]
+    fn zeros_after_the_last_line_are_a_cut_however_many() {
+        for zeros in [1, 511, 512, 513, 100_000] {
+            let log = format!("{LOG}(1.8{}", "\0".repeat(zeros));
+            let read = || Reader::new(log.as_bytes(), "a.log");
+            let error = read().last().unwrap().unwrap_err();
+            assert!(matches!(error, ReadError::Cut { line: 5, .. }), "{zeros}: {error}");
+            let mut reader = read().accepting_cut();
+            assert_eq!(reader.by_ref().filter_map(Result::ok).count(), 2);
+            assert_eq!(reader.cut_line(), Some(5));
+            let more = format!("{log}({}", "x".repeat(600));
+            let reader = Reader::new(more.as_bytes(), "a.log").accepting_cut();
+            let error = reader.last().unwrap().unwrap_err();
+            assert!(matches!(error, ReadError::Bad { line: 5, .. }), "{zeros}: {error}");
+        }
+        let error = Reader::new(io::BufReader::new(io::repeat(0)), "zero").next().unwrap();
+        assert!(matches!(error, Err(ReadError::Bad { what: BadLine::TooLong, .. })), "no log");
     }
 
     #[test]

@@ -108,6 +108,7 @@ mod tests {
     fn named_rates_are_what_they_say() {
         assert_eq!(Bitrate::MBIT_1, Bitrate::new(1_000_000).unwrap());
         assert_eq!(Bitrate::KBIT_500.bits_per_s(), 500_000);
+        assert_eq!(Bitrate::new(5_000).unwrap().duration(1), Duration::from_micros(200));
         assert_eq!(Bitrate::KBIT_250.duration(3), Duration::from_micros(12));
     }
 

@@ -1,12 +1,13 @@
 //! `xt28 gap drive`: the scripted test drives that a diagnosis asks for.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use xt28_gap::diagnosis::Manoeuvre;
 
-use crate::files::write;
+use crate::files::{writable, write};
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -46,12 +47,18 @@ impl Drive {
 /// Where a drive goes that nobody gave a file for: what is there under its name must be a drive too.
 fn unnamed(name: &str) -> Result<PathBuf, Failure> {
     let out = PathBuf::from(format!("{name}.toml"));
-    match fs::read_to_string(&out) {
-        Ok(text) if !Manoeuvre::is_scenario(&text) => {
-            let problem = "is there and is not a drive; name another file with --out";
-            Err(format!("{} {problem}", out.display()).into())
-        }
-        _ => Ok(out),
+    if is_other(&out, Manoeuvre::is_scenario) {
+        let problem = "is there and is not a drive; name another file with --out";
+        return Err(format!("{} {problem}", out.display()).into());
+    }
+    Ok(out)
+}
+
+/// Whether something is at `path` that is none of ours, in whatever encoding; what cannot be read is not ours.
+fn is_other(path: &Path, is_ours: impl Fn(&str) -> bool) -> bool {
+    match fs::read(path) {
+        Ok(bytes) => !is_ours(&String::from_utf8_lossy(&bytes)),
+        Err(error) => error.kind() != ErrorKind::NotFound,
     }
 }
 
@@ -63,14 +70,12 @@ pub(super) fn script_beside(path: &Path) -> PathBuf {
 /// Refuses to replace a file beside `path` that nobody named and that is no drive's script.
 pub(super) fn ensure_free(path: &Path) -> Result<(), Failure> {
     let script = script_beside(path);
-    match fs::read_to_string(&script) {
-        Ok(text) if !Manoeuvre::wrote(&text) => {
-            let (script, path) = (script.display(), path.display());
-            let problem = "is there and is not the script of a drive";
-            Err(format!("{script} {problem}; give another name than {path}").into())
-        }
-        _ => Ok(()),
+    if is_other(&script, Manoeuvre::wrote) {
+        let (script, path) = (script.display(), path.display());
+        let problem = "is there and is not the script of a drive";
+        return Err(format!("{script} {problem}; give another name than {path}").into());
     }
+    Ok(())
 }
 
 /// Writes `manoeuvre` into `path`, and its script beside it.
@@ -81,6 +86,8 @@ pub(super) fn write_drive(
 ) -> Result<(), Failure> {
     ensure_free(path)?;
     let script = script_beside(path);
+    // Half a drive is none.
+    writable([script.as_path(), path])?;
     let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
     write(&script, &manoeuvre.script())?;
     write(path, &manoeuvre.scenario(&name, good_for))

@@ -108,8 +108,11 @@ impl Program {
         Ok(())
     }
 
-    /// Sends it a signal.
+    /// Sends it a signal; none once it was ended, when its process number may be somebody else's.
     pub(super) fn signal(&self, signal: Signal) -> Result<(), Failure> {
+        if self.ended {
+            return Ok(());
+        }
         let pid = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw);
         let pid = pid.ok_or_else(|| format!("{} has no process number", self.name))?;
         Ok(kill_process(pid, signal)?)
@@ -152,4 +155,18 @@ fn beside(name: &str) -> Result<PathBuf, Failure> {
     }
     let remedy = format!("build it with `cargo build --release -p {name}`");
     Err(format!("no {} beside xt28; {remedy}", path.display()).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_hears_an_order_to_a_program_that_was_killed() {
+        let mut program = Program::start("sleep", &["60"], Output::Read).unwrap();
+        program.must_run().unwrap();
+        program.kill().unwrap();
+        program.signal(Signal::USR2).unwrap();
+        program.must_run().unwrap();
+    }
 }

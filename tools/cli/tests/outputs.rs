@@ -1,0 +1,188 @@
+//! What a command writes: never over what it reads or what it wrote before, and nothing is lost for the sake of it.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn xt28(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
+}
+
+/// What is said of a command that could not be done.
+fn refusal(arguments: &[&str]) -> String {
+    let output = xt28(arguments);
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    talk
+}
+
+/// A folder, and files in it by name.
+fn folder_with(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+fn path(folder: &tempfile::TempDir, name: &str) -> String {
+    folder.path().join(name).to_str().unwrap().to_owned()
+}
+
+const SCENARIO: &str = "title = \"t\"\npolicy = \"hold\"\nduration_s = 0.2\n";
+const FLIES: &str = "[[expect]]\nreaches-pose = { x_m = 9, y_m = 0, heading_deg = 0, within_m = 1, within_deg = 9 }\n";
+
+#[test]
+fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
+    let heavy = "[[effect]]\nname = \"payload\"\nmass_kg = 14000.0\n";
+    let builtin = String::from_utf8(xt28(&["config", "show"]).stdout).unwrap();
+    let folder = folder_with(&[
+        ("s.toml", SCENARIO),
+        ("bad.toml", &SCENARIO.replace("hold", "nosuch")),
+        ("heavy.toml", heavy),
+        ("weak.toml", &builtin.replace("load_max_kg = 14000.0", "load_max_kg = 9000.0")),
+        ("old.log", "kept"),
+    ]);
+    let names = ["s.toml", "bad.toml", "heavy.toml", "weak.toml", "old.log"];
+    let [s, bad, heavy, weak, log] = names.map(|name| path(&folder, name));
+    let talk = refusal(&["run", &bad, "--record", &log]);
+    assert!(talk.contains("bad.toml:2: no policy"), "{talk}");
+    let talk = refusal(&["run", &s, "--machine", &weak, "--effects", &heavy, "--record", &log]);
+    assert!(talk.contains("more than this machine carries"), "{talk}");
+    assert_eq!(fs::read_to_string(&log).unwrap(), "kept");
+    assert!(xt28(&["run", &s, "--record", &log]).status.success());
+    assert_ne!(fs::read_to_string(&log).unwrap(), "kept");
+}
+
+#[test]
+fn a_run_writes_over_nothing_that_it_reads() {
+    let action = "[[action]]\nat_s = 0.1\nleft_button = 18\n";
+    let kerb = "kind = \"step\"\nx_m = 6\nheight_m = 0.15\n";
+    let map = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 9\n0 0\n0 0\n";
+    let of_map = "[terrain.height_map]\nfile = \"map.asc\"\n";
+    let folder = folder_with(&[
+        ("op.toml", action),
+        ("cab.toml", &format!("profile = \"2016\"\noperator = \"op.toml\"\n{SCENARIO}")),
+        ("kerb.toml", kerb),
+        ("ground.toml", &format!("terrain = \"kerb.toml\"\n{SCENARIO}")),
+        ("map.asc", map),
+        ("mapped.toml", &format!("{SCENARIO}{of_map}")),
+    ]);
+    for (scenario, input, text) in [
+        ("cab.toml", "op.toml", action),
+        ("ground.toml", "kerb.toml", kerb),
+        ("mapped.toml", "map.asc", map),
+    ] {
+        let (scenario, input) = (path(&folder, scenario), path(&folder, input));
+        let talk = refusal(&["run", &scenario, "--record", &input]);
+        assert!(talk.contains("this command reads that file; give --record another"), "{talk}");
+        assert_eq!(fs::read_to_string(input).unwrap(), text);
+    }
+}
+
+#[test]
+fn the_log_is_none_of_the_other_files_of_a_run() {
+    let folder = folder_with(&[("s.toml", SCENARIO), ("s.json", "title")]);
+    let (scenario, out) = (path(&folder, "s.toml"), folder.path().to_str().unwrap());
+    for name in ["s.json", "s.svg"] {
+        let talk = refusal(&["run", &scenario, "--record", &path(&folder, name), "--out", out]);
+        assert!(talk.contains("--record and --out would write the same file"), "{talk}");
+    }
+    let log = path(&folder, "s.log");
+    assert!(xt28(&["run", &scenario, "--record", &log, "--out", out]).status.success());
+    // A scenario may have any name.
+    fs::copy(&scenario, path(&folder, "s.json")).unwrap();
+    let talk = refusal(&["run", &path(&folder, "s.json"), "--out", out]);
+    assert!(talk.contains("reads that file; give --out another"), "{talk}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_named_with_the_file_and_costs_no_report() {
+    let folder = folder_with(&[("s.toml", SCENARIO)]);
+    let (scenario, out) = (path(&folder, "s.toml"), folder.path().to_str().unwrap());
+    let talk = refusal(&["run", &scenario, "--record", "/dev/full"]);
+    assert!(talk.starts_with("xt28: /dev/full: cannot write"), "{talk}");
+    std::os::unix::fs::symlink("/dev/full", path(&folder, "s.svg")).unwrap();
+    let output = xt28(&["run", &scenario, "--out", out]);
+    assert_eq!(output.status.code(), Some(2));
+    let talk = String::from_utf8(output.stderr).unwrap();
+    assert!(talk.contains("s.svg: cannot write: No space left"), "{talk}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("s passed"), "the report was made");
+}
+
+#[test]
+fn a_reader_that_goes_away_takes_no_verdict_with_it() {
+    let folder = folder_with(&[("s.toml", &format!("{SCENARIO}{FLIES}"))]);
+    let out = folder.path().join("out");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_xt28"))
+        .args(["run", &path(&folder, "s.toml"), "--out", out.to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert!(out.join("s.json").is_file() && out.join("s.svg").is_file());
+}
+
+/// The headers of the sections that `xt28 config show` prints of a machine file, in order.
+fn sections(machine: &Path) -> (Vec<String>, String) {
+    let output = xt28(&["config", "show", "--machine", machine.to_str().unwrap()]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let headers = text.lines().filter(|line| line.starts_with('['));
+    (headers.map(|line| line[..=line.find(']').unwrap()].to_owned()).collect(), text)
+}
+
+#[test]
+fn every_section_in_force_is_shown_once_and_what_is_shown_is_a_machine_file() {
+    let whole = String::from_utf8(xt28(&["config", "show"]).stdout).unwrap();
+    let (vehicle, levelling) =
+        (whole.find("[vehicle]").unwrap(), whole.find("[levelling]").unwrap());
+    assert!(vehicle < levelling);
+    for text in [
+        whole.clone(),
+        whole[..levelling].to_owned(),
+        whole[..vehicle].to_owned(),
+        whole[..vehicle].to_owned() + &whole[levelling..],
+    ] {
+        let folder = folder_with(&[("m.toml", &text)]);
+        let (mut headers, shown) = sections(&folder.path().join("m.toml"));
+        headers.sort();
+        let of = |name: &str| headers.iter().filter(|header| *header == name).count();
+        assert_eq!((of("[masses]"), of("[vehicle]"), of("[levelling]")), (1, 1, 1), "{headers:?}");
+        fs::write(folder.path().join("shown.toml"), shown).unwrap();
+        sections(&folder.path().join("shown.toml"));
+    }
+}
+
+#[test]
+fn a_drive_is_not_written_over_a_file_in_another_encoding() {
+    let folder = folder_with(&[]);
+    let latin = b"# f\xFCr mich\n";
+    fs::write(folder.path().join("straight.toml"), latin).unwrap();
+    fs::write(folder.path().join("mine.script.toml"), latin).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_xt28"))
+        .args(["gap", "drive", "straight"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    refusal(&["gap", "drive", "straight", "--out", &path(&folder, "mine.toml")]);
+    for name in ["straight.toml", "mine.script.toml"] {
+        assert_eq!(fs::read(folder.path().join(name)).unwrap(), latin);
+    }
+    // Nor is half a drive left where the other half cannot be written.
+    fs::create_dir(folder.path().join("taken.toml")).unwrap();
+    refusal(&["gap", "drive", "straight", "--out", &path(&folder, "taken.toml")]);
+    assert!(!folder.path().join("taken.script.toml").exists());
+}
+
+#[test]
+fn a_setting_that_is_given_twice_or_is_no_number_is_refused() {
+    let talk = refusal(&["effects", "arm-delay", "delay_s=0.1", "delay_s=0.2"]);
+    assert!(talk.contains("delay_s is given twice"), "{talk}");
+    let talk = refusal(&["effects", "arm-delay", "delay_s=nan"]);
+    assert!(talk.contains("`nan` is no number"), "{talk}");
+}

@@ -7,8 +7,9 @@ use serde::Serialize;
 use super::inquiry::FieldRun;
 use super::onset::Onset;
 
-/// What is told of a cause that comes in every run.
+/// What is told of a cause that comes in every run, and of one that comes once before it is known in which.
 const EVERY_RUN: &str = "every run";
+const THE_DAY: &str = "the day's recording";
 /// Less than this into a run is its start, s.
 const AT_START_S: f64 = 0.05;
 
@@ -29,8 +30,8 @@ impl Beginning {
     /// [`Self::told_by`] to say.
     #[must_use]
     pub fn of(onset: Onset) -> Option<Self> {
-        let is_late = onset.is_late();
-        is_late.then(|| Self { run: EVERY_RUN.to_owned(), at_s: onset.at_s(), onset })
+        let run = if onset.is_once() { THE_DAY } else { EVERY_RUN };
+        onset.is_late().then(|| Self { run: run.to_owned(), at_s: onset.at_s(), onset })
     }
 
     /// The same by the run of `runs` in which it comes, where it comes once.

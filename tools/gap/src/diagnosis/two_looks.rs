@@ -2,7 +2,7 @@
 //!
 //! There are so many instants of a day that what sets in once could be anything that a model does not quite say: joints
 //! that play without steering, in the first runs of a day. So it is looked for only where the first look ends in
-//! something unknown, and believed only where it leaves nothing unknown.
+//! something unknown, and believed only where it leaves nothing unknown; told as a lead where it leaves less.
 
 use super::diagnose::Progress;
 use super::inquiry::Inquiry;
@@ -25,8 +25,8 @@ impl Inquiry {
         let on_their_day = [of(true), of(false)];
         let each = on_their_day.clone().map(apart);
         let every_run = self.findings_of(&each, progress);
-        let is_known = judge(self, &every_run).verdict != Verdict::Unknown;
-        if is_known || on_the_day(&on_their_day[0]).is_empty() {
+        let first = judge(self, &every_run);
+        if first.verdict != Verdict::Unknown || on_the_day(&on_their_day[0]).is_empty() {
             return every_run;
         }
         let [from, to] = SECOND_LOOK;
@@ -37,7 +37,13 @@ impl Inquiry {
         let told = judge(self, &once);
         let comes_once = |cause: &Cause| cause.onset().is_once();
         let leads = told.causes.first().is_some_and(comes_once) || told.stood_by().any(comes_once);
-        if told.verdict == Verdict::Effect && leads { once } else { every_run }
+        let is_better = match told.verdict {
+            Verdict::Effect => true,
+            // It is no more believed, but a better lead.
+            Verdict::Unknown => told.grounds.left_over < first.grounds.left_over,
+            Verdict::None => false,
+        };
+        if leads && is_better { once } else { every_run }
     }
 }
 

@@ -4,8 +4,8 @@ use core::fmt;
 
 use serde::Serialize;
 
-use super::inquiry::FieldRun;
 use super::onset::Onset;
+use super::signals::Signals;
 
 /// What is told of a cause that comes in every run, and of one that comes once before it is known in which.
 const EVERY_RUN: &str = "every run";
@@ -35,15 +35,12 @@ impl Beginning {
     }
 
     /// The same by the run of `runs` in which it comes, where it comes once.
-    pub(super) fn told_by(&mut self, runs: &[FieldRun]) {
-        let begun = |run: &&FieldRun| run.signals.began_s <= self.onset.at_s();
-        let last = runs.iter().filter(begun).max_by(|a, b| {
-            let [a, b] = [a, b].map(|run| run.signals.began_s);
-            a.total_cmp(&b)
-        });
+    pub(super) fn told_by<'s>(&mut self, runs: impl IntoIterator<Item = &'s Signals>) {
+        let begun = |run: &&Signals| run.began_s <= self.onset.at_s();
+        let last = runs.into_iter().filter(begun).max_by(|a, b| a.began_s.total_cmp(&b.began_s));
         if let (true, Some(run)) = (self.onset.is_once(), last) {
-            self.run = run.file();
-            self.at_s = self.onset.at_s() - run.signals.began_s;
+            self.run.clone_from(&run.name);
+            self.at_s = self.onset.at_s() - run.began_s;
         }
     }
 }

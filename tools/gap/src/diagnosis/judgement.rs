@@ -31,9 +31,10 @@ pub(super) fn judge(inquiry: &Inquiry, findings: &Findings) -> Diagnosis {
     let grounds = findings.grounds();
     let chances = Scales::IN_USE.chances(grounds);
     let mut causes = causes(findings, chances.known);
+    let runs = || inquiry.runs.iter().map(|run| &run.signals);
     for cause in &mut causes {
         cause.begins = cause.begins.take().filter(|begins| is_told(inquiry, cause, begins.onset));
-        cause.begins.iter_mut().for_each(|begins| begins.told_by(&inquiry.runs));
+        cause.begins.iter_mut().for_each(|begins| begins.told_by(runs()));
     }
     let verdict = likeliest(&chances);
     let [before, after] = gaps(findings, verdict);

@@ -26,8 +26,8 @@ pub struct Beginning {
 }
 
 impl Beginning {
-    /// Of an effect of that onset, where that is not before all runs. In which run one comes that comes once is for
-    /// [`Self::told_by`] to say.
+    /// Of an effect of that onset, where that is not before all runs. In which run one comes that comes once is yet to
+    /// be said.
     #[must_use]
     pub fn of(onset: Onset) -> Option<Self> {
         let run = if onset.is_once() { THE_DAY } else { EVERY_RUN };

@@ -1,12 +1,12 @@
 //! What the command answers to bad input: one line with file, line and remedy, exit status 2.
 
+mod command;
+
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-fn xt28(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
-}
+use command::xt28;
 
 /// The one line of a refusal.
 fn refusal(arguments: &[&str]) -> String {

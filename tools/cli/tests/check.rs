@@ -1,11 +1,13 @@
 //! `xt28 gap check` on a folder of cases: which of them it examines, and where its answer goes.
 
+mod command;
 mod short_drive;
 
 use std::fs;
 use std::path::Path;
 
-use short_drive::{DBC, log, path, xt28};
+use command::xt28;
+use short_drive::{DBC, log, path};
 
 const CASES: [&str; 3] = ["a", "b", "c"];
 

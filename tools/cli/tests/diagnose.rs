@@ -1,12 +1,14 @@
 //! `xt28 gap diagnose` on a log of this bench's own machine: every file it writes reads back, and
 //! every test drive that it may propose is a scenario that runs and holds.
 
+mod command;
 mod short_drive;
 
 use std::fs;
 use std::path::Path;
 
-use short_drive::{DBC, log, path, xt28};
+use command::xt28;
+use short_drive::{DBC, log, path};
 use xt28_gap::diagnosis::Manoeuvre;
 
 #[test]

@@ -1,11 +1,13 @@
 //! What `xt28 gap diagnose` answers to logs, databases and mappings that do not fit: one line that says
 //! what, where and what to do, exit status 2, and nothing on stdout.
 
+mod command;
 mod short_drive;
 
 use std::fs;
 
-use short_drive::{DBC, log, path, xt28};
+use command::xt28;
+use short_drive::{DBC, log, path};
 use tempfile::TempDir;
 
 /// The one line of a refusal to diagnose.

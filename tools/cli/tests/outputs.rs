@@ -1,12 +1,12 @@
 //! What a command writes: never over what it reads or what it wrote before, and nothing is lost for the sake of it.
 
+mod command;
+
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-fn xt28(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
-}
+use command::xt28;
 
 /// What is said of a command that could not be done.
 fn refusal(arguments: &[&str]) -> String {

@@ -1,13 +1,11 @@
 //! What `xt28 replay` says of a log of our own machine: its exit status, its data, its picture.
 
+mod command;
+
 use std::fs;
-use std::process::{Command, Output};
 
+use command::xt28;
 use serde_json::Value;
-
-fn xt28(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
-}
 
 const DBC: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dbc/xt28.dbc");
 

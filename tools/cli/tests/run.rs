@@ -1,13 +1,11 @@
 //! What `xt28 run` gives: data on stdout, talk on stderr, files where asked, its exit status.
 
+mod command;
+
 use std::fs;
-use std::process::{Command, Output};
 
+use command::xt28;
 use serde_json::Value;
-
-fn xt28(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
-}
 
 /// Half a second with the arms held: short, and the whole loop.
 fn short(expect: &str) -> (tempfile::TempDir, String) {

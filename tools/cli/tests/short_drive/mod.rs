@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use tempfile::TempDir;
+
+use crate::command::xt28;
 
 /// The database that this bench's logs are sent with.
 pub(crate) const DBC: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../dbc/xt28.dbc");
@@ -35,10 +36,6 @@ at_s = 5
 stroke_mm = [100, 140, 100, 100, 100, 120]
 front_angle_deg = 8
 "#;
-
-pub(crate) fn xt28(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().expect("xt28 starts")
-}
 
 /// The log, driven once.
 pub(crate) fn log() -> String {

@@ -40,6 +40,14 @@ pub enum CheckError {
         /// What is wrong there, and what would be right.
         problem: String,
     },
+    /// An answer says that a fault set in in a run that its case does not have.
+    #[error("{case}: start_run = \"{run}\" is no log of it; name the file of one of its runs")]
+    NoRun {
+        /// The case.
+        case: String,
+        /// The run.
+        run: String,
+    },
     /// A case's logs do not say which database they were sent with.
     #[error("{path}: names no DBC; add dbc = \"FILE\"")]
     NoDatabase {

@@ -16,12 +16,15 @@ pub(crate) fn oracle(source: &Source, truth: &Truth) -> Result<Option<Shrink>, C
         return Ok(None);
     }
     let inquiry = source.inquiry()?;
-    let causes: Vec<Cause> = truth.facts.iter().filter_map(|fact| cause(fact, &inquiry)).collect();
+    let mut causes = Vec::new();
+    for fact in &truth.facts {
+        causes.extend(cause(fact, onset(fact, truth, &inquiry)?));
+    }
     Ok(Some(HowFar::new(&inquiry)?.refit(&causes).shrink))
 }
 
 /// A true effect as a cause that one is sure of.
-fn cause(fact: &Fact, inquiry: &Inquiry) -> Option<Cause> {
+fn cause(fact: &Fact, onset: Onset) -> Option<Cause> {
     let effect = fact.effect?;
     let known = |name: &str| fact.parameters.iter().find(|(p, _)| p.name == name);
     let estimate = |p: &'static xt28_sim::effects::Parameter| {
@@ -37,16 +40,16 @@ fn cause(fact: &Fact, inquiry: &Inquiry) -> Option<Cause> {
         probability: 1.0,
         parameters: effect.parameters.iter().map(estimate).collect(),
         class: vec![effect.name],
-        begins: Beginning::of(onset(fact, inquiry)),
+        begins: Beginning::of(onset),
         shrink: None,
     })
 }
 
 /// When it sets in, in every run or in one of those of `inquiry`.
-fn onset(fact: &Fact, inquiry: &Inquiry) -> Onset {
-    let is_in = |name: &String| inquiry.runs.iter().find(|run| run.file() == *name);
-    match fact.start_run.as_ref().and_then(is_in) {
-        Some(run) => Onset::once(run.signals.began_s + fact.start_s),
-        None => Onset::in_every_run(fact.start_s),
+fn onset(fact: &Fact, truth: &Truth, inquiry: &Inquiry) -> Result<Onset, CheckError> {
+    let Some(name) = &fact.start_run else { return Ok(Onset::in_every_run(fact.start_s)) };
+    match inquiry.runs.iter().find(|run| run.file() == *name) {
+        Some(run) => Ok(Onset::once(run.signals.began_s + fact.start_s)),
+        None => Err(CheckError::NoRun { case: truth.case.clone(), run: name.clone() }),
     }
 }

@@ -8,7 +8,7 @@ use super::excitation::Shown;
 use super::how_far::HowFar;
 use super::hypothesis::{Fit, Hypothesis};
 use super::inquiry::Inquiry;
-use super::judgement::{Findings, HeldOut, HeldOutSignal, SignalFindings, judge};
+use super::judgement::{Findings, HeldOut, HeldOutSignal, SignalFindings};
 use super::knob::{Knob, SHIFT_MAX};
 use super::likely_wheels::at_likely_wheels;
 use super::overlap::{Paid, own_share};
@@ -40,7 +40,7 @@ impl Inquiry {
     /// The answer. `progress` hears of every step, from any thread.
     #[must_use]
     pub fn diagnose(&self, progress: &(dyn Fn(Progress) + Sync)) -> Diagnosis {
-        let mut diagnosis = judge(self, &self.findings(progress));
+        let mut diagnosis = self.looked(progress).1;
         self.say_how_far(&mut diagnosis, progress);
         diagnosis
     }

@@ -98,7 +98,7 @@ impl Onset {
 
 /// When the first of several effects sets in.
 #[derive(Clone, Debug, Default)]
-pub struct FirstOnset(Vec<Onset>);
+pub(super) struct FirstOnset(Vec<Onset>);
 
 impl FirstOnset {
     /// Of none there from the start.
@@ -107,8 +107,7 @@ impl FirstOnset {
     }
 
     /// When a run that began `began_s` s into the day has the first of them, s of that run; 0 of none.
-    #[must_use]
-    pub fn in_run(&self, began_s: f64) -> f64 {
+    pub(super) fn in_run(&self, began_s: f64) -> f64 {
         let each = self.0.iter().map(|onset| onset.in_run(began_s));
         each.reduce(f64::min).unwrap_or_default()
     }

@@ -25,8 +25,7 @@ impl Diagnosis {
     }
 
     /// When the first of those causes begins.
-    #[must_use]
-    pub fn since(&self) -> FirstOnset {
+    pub(super) fn since(&self) -> FirstOnset {
         since(self.stood_by())
     }
 

@@ -46,11 +46,9 @@ impl Docket<'_> {
         let stretch = self.fit.stretch();
         let each = best(&SETS_IN_S.map(|at_s| Onset::in_every_run(at_s * stretch)))?;
         let once = best(&self.fit.onsets_on_the_day(ONCE_STEP_S * stretch));
-        let (other, least) = match onset.is_once() {
-            true => (each.0, 0.0),
-            false => (each.0.max(whole), once_least(each.0.max(whole))),
-        };
-        let once = once.filter(|once| once.0 > other + least);
+        let other = each.0.max(whole);
+        let least = if onset.is_once() { each.0 } else { other + once_least(other) };
+        let once = once.filter(|once| once.0 > least);
         let (gain, at) = once.unwrap_or(each);
         if !onset.is_late() && gain < whole + BEGINNING_HINT {
             return None;
@@ -71,15 +69,11 @@ impl Docket<'_> {
         let held = self.held.as_ref().filter(|_| onset.is_late())?;
         let here = hypothesis.gain(&self.fit, onset, values);
         let least = here * (1.0 - OPEN[1]) - OPEN[0];
-        let last_s = if onset.is_once() {
-            self.fit.last_of_the_day_s()
+        let (last_s, starts) = if onset.is_once() {
+            let starts = [&self.fit, held].map(Evidence::starts_on_the_day_s).concat();
+            (self.fit.last_of_the_day_s(), starts)
         } else {
-            SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch()
-        };
-        let starts: Vec<f64> = if onset.is_once() {
-            [&self.fit, held].map(Evidence::starts_on_the_day_s).concat()
-        } else {
-            Vec::new()
+            (SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch(), Vec::new())
         };
         // The middle of those within `reach_s` of `about_s` that suit all runs best.
         let best = |about_s: f64, reach_s: f64, step_s: f64| -> Option<f64> {

@@ -13,6 +13,7 @@ mod agreement;
 mod beginning;
 mod belief;
 mod blend;
+mod candidate;
 mod candidates;
 pub mod details;
 mod diagnose;
@@ -50,7 +51,7 @@ pub use agreement::{
 pub(crate) use agreement::{ensure_motions_agreeing, ensure_pressures_agreeing};
 pub use beginning::Beginning;
 pub use belief::{Base, Belief};
-pub use candidates::Candidate;
+pub use candidate::Candidate;
 pub use details::Details;
 pub use diagnose::Progress;
 pub use evidence::{Echo, Evidence, Left, Uneven};

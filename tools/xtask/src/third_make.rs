@@ -16,6 +16,7 @@ pub(crate) struct ThirdMake {
     /// Folder for cases and their answers
     out: PathBuf,
     /// What is wrong, a case each: `NAME` or `NAME:SCOPE`, two joined by +, or `sound`; one of each fault if none
+    /// and no pairs
     causes: Vec<String>,
     /// Seed of the first case; the next has one more
     #[arg(long, default_value_t = 1, value_name = "SEED")]
@@ -29,6 +30,9 @@ pub(crate) struct ThirdMake {
     /// Faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay
     #[arg(long, conflicts_with = "late")]
     once: bool,
+    /// Also so many pairs of known faults, drawn by lot
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pairs: u32,
 }
 
 impl ThirdMake {
@@ -48,7 +52,9 @@ impl ThirdMake {
         if self.once {
             command.arg("--once");
         }
-        let status = command.arg(format!("--seed={}", self.seed)).status()?;
+        let status = command
+            .args([format!("--seed={}", self.seed), format!("--pairs={}", self.pairs)])
+            .status()?;
         Ok(u8::from(!status.success()))
     }
 }

@@ -8,7 +8,7 @@ import numpy as np
 
 from xt28_mujoco.machine import Machine
 
-from .faults import NAMES, draw, once
+from .faults import NAMES, draw, once, pairs
 from .run import Run
 from .scripts import RAMP, drives
 from .truth import Truth, tolerances
@@ -18,6 +18,7 @@ BEGIN_S = 1.76e9
 BETWEEN_S = 900.0
 # Beside the runs' numbers, which draw their noise.
 ONCE_STREAM = 1000
+PAIRS_STREAM = 1001
 
 
 def about(name: str, scripts) -> str:
@@ -122,12 +123,17 @@ def main() -> None:
         help="faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay",
     )
     parser.add_argument(
+        "--pairs", type=int, default=0, metavar="N", help="also N pairs of known faults, by lot"
+    )
+    parser.add_argument(
         "causes",
         nargs="*",
-        help="a case each: NAME[:SCOPE], two joined by +, or `sound`; one of each fault if none",
+        help="a case each: NAME[:SCOPE], two joined by +, or `sound`; one of each fault "
+        "if none and no pairs",
     )
     args = parser.parse_intermixed_args()
-    causes = args.causes or ["sound"] + list(NAMES)
+    causes = args.causes + pairs(args.pairs, np.random.default_rng((args.seed, PAIRS_STREAM)))
+    causes = causes or ["sound"] + list(NAMES)
     for k, cause in enumerate(causes):
         parts = [] if cause == "sound" else cause.split("+")
         if len(parts) > 2:

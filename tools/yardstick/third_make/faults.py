@@ -100,3 +100,14 @@ def once(fault: Fault, random: np.random.Generator) -> Fault:
     within_s = round(float(random.uniform(*LATE_S)), 1)
     start_s = float(random.choice((0.0, within_s)))
     return replace(fault, start_s=start_s, start_run=int(random.choice(ONCE_IN)))
+
+
+def pairs(number: int, random: np.random.Generator) -> list[str]:
+    """So many pairs of known faults in two groups each, as `draw` takes them, joined by +."""
+    known = [name for name in NAMES if TABLE[name].get("known", True)]
+    chosen = []
+    while len(chosen) < number:
+        first, second = (str(name) for name in random.choice(known, 2, replace=False))
+        if TABLE[first]["group"] != TABLE[second]["group"]:
+            chosen.append(f"{first}+{second}")
+    return chosen

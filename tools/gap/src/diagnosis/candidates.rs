@@ -8,6 +8,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
 use super::belief::{Base, Belief};
+use super::candidate::Candidate;
 use super::evidence::{Echo, Evidence, Left, Uneven};
 use super::hypothesis::{Fit, Hypothesis};
 use super::knob::Knob;
@@ -24,102 +25,11 @@ const NEAR: f64 = 0.5;
 const OPEN: [f64; 2] = [4.0, 0.03];
 /// Evidence of the runs fitted from which that is worth a look, nats.
 const SUITED_MIN: f64 = 12.0;
-/// A fitted hypothesis with what it is worth on both sets of runs.
-#[derive(Clone, Debug)]
-pub struct Candidate {
-    /// What was fitted, and how well.
-    pub fit: Fit,
-    /// What the same values gain on the runs held out, nats; below zero they do harm. None where none
-    /// was held out, or where none of them shows it: a pump is not short while no arm moves.
-    pub held_gain: Option<f64>,
-    /// What that could be at most, nats: if the machine were just so.
-    pub held_most: f64,
-    /// Share of what it gains that another law of the cause beside it could not explain: one where it is
-    /// the first.
-    pub own_share: f64,
-    /// Whether its size or its beginning was chosen by the runs held out too, among those that the runs fitted leave
-    /// open.
-    pub is_chosen_by_held: bool,
-}
-
-/// How many times as much as it foretells a cause may explain, and what it may explain beside, nats. A
-/// right cause explains two to nine times as much on the runs fitted as it foretells of the others; what
-/// bends to the first alone explains how two models differ.
-const FORETOLD: [f64; 2] = [8.0, 8.0];
-/// Share of what it could foretell at most that a second cause must: true ones foretell a third and more, most
-/// of them nearly all.
-const SECOND_FORETOLD: f64 = 0.5;
-/// What a cause is allowed for chance there, nats.
-const CHANCE: f64 = 1.0;
-/// Runs held out that could tell less of a cause than this say nothing of it, nats.
-const TELLING_MIN: f64 = 3.0;
 
 /// All runs around one state of belief.
 pub(super) struct Docket<'a> {
     fit: Evidence<'a>,
     held: Option<Evidence<'a>>,
-}
-
-impl Candidate {
-    /// Name of the effect.
-    pub(super) fn name(&self) -> &'static str {
-        self.fit.hypothesis.effect.name
-    }
-
-    /// Evidence of the runs fitted and foretelling of those held out, nats over the base; a cause that
-    /// foretells next to nothing has no more than that.
-    #[must_use]
-    pub fn score(&self) -> f64 {
-        let [times, beside] = FORETOLD;
-        let most = self.foretold().map(|[held, _]| times * (held + beside));
-        self.own_share * most.map_or(self.told(), |most| self.told().min(most))
-    }
-
-    /// The same where it is to stand beside a first cause: what that leaves of the runs fitted, another
-    /// law bends to, and foretells little of what it would.
-    pub(super) fn second_score(&self) -> f64 {
-        let share = self.foretold().map_or(1.0, |[held, most]| {
-            ((held + CHANCE) / (SECOND_FORETOLD * (most + CHANCE))).clamp(0.0, 1.0)
-        });
-        share * self.score()
-    }
-
-    /// What all runs say of it, nats.
-    fn told(&self) -> f64 {
-        self.fit.log_evidence + self.held_gain.unwrap_or_default()
-    }
-
-    /// What it foretells of the runs held out, and what it could at most; `None` where they could not tell.
-    fn foretold(&self) -> Option<[f64; 2]> {
-        let held = self.held_gain.filter(|_| self.held_most > TELLING_MIN)?;
-        Some([held, self.held_most])
-    }
-
-    /// Whether a `second` beside it would be more of the same from a later instant of every run on: both set
-    /// in late, in one block and on some wheel of both. What grows by steps is no two causes, but one that
-    /// changes as a run goes on, and is in no catalogue.
-    pub(super) fn goes_on_as(&self, second: &Self) -> bool {
-        let (own, other) = (&self.fit, &second.fit);
-        let is_on_both = |w| own.hypothesis.scope.contains(w) && other.hypothesis.scope.contains(w);
-        own.onset.is_late()
-            && other.onset != own.onset
-            && other.onset.later(own.onset) == other.onset
-            && own.hypothesis.effect.block == other.hypothesis.effect.block
-            && Wheel::ALL.into_iter().any(is_on_both)
-    }
-}
-
-#[cfg(test)]
-impl Candidate {
-    /// One that explains `score` nats with every parameter a tolerance off, held out nowhere.
-    pub(super) fn made_up(name: &str, scope: xt28_sim::effects::Scope, score: f64) -> Self {
-        let effect = xt28_sim::effects::find(name).unwrap();
-        let values: Vec<f64> = effect.parameters.iter().map(|p| p.neutral + p.tolerance).collect();
-        let (hypothesis, sigma) = (Hypothesis { effect, scope }, vec![0.0; values.len()]);
-        let fit = Fit { hypothesis, values, sigma, onset: Onset::ALWAYS, log_evidence: score };
-        let is_chosen_by_held = false;
-        Self { fit, held_gain: None, held_most: 0.0, own_share: 1.0, is_chosen_by_held }
-    }
 }
 
 impl<'a> Docket<'a> {
@@ -315,7 +225,6 @@ fn rank(all: &mut [Candidate]) {
 
 #[cfg(test)]
 mod tests {
-    use xt28_machine::{Axle, Side};
     use xt28_sim::effects::Scope;
 
     use super::*;
@@ -359,27 +268,5 @@ mod tests {
         assert!((told(&[&beside, &weak(0.0)]) - alone).abs() < 1e-9 * alone, "in any order");
         let late = told(&[&weak(12.0)]);
         assert!((late - alone).abs() > 1e-3 * alone, "when it sets in tells: {alone} {late}");
-    }
-
-    #[test]
-    fn what_grows_by_steps_is_no_pair() {
-        let from = |name: &str, scope: Scope, at_s: f64| {
-            let mut late = Candidate::made_up(name, scope, 400.0);
-            late.fit.onset = Onset::in_every_run(at_s);
-            late
-        };
-        let gain = from("valve-gain", Scope::All, 16.8);
-        assert!(gain.goes_on_as(&from("speed-asymmetry", Scope::Axle(Axle::Rear), 24.1)));
-        let other = [
-            from("speed-asymmetry", Scope::All, 0.0),
-            from("speed-asymmetry", Scope::All, 16.8),
-            from("steer-lag", Scope::All, 24.1),
-        ];
-        assert!(other.iter().all(|second| !gain.goes_on_as(second)));
-        let [left, right] = [Side::Left, Side::Right].map(Scope::Side);
-        let [left, right] = [from("valve-gain", left, 8.0), from("valve-lag", right, 12.0)];
-        assert!(!left.goes_on_as(&right));
-        let always = from("valve-gain", Scope::All, 0.0);
-        assert!(!always.goes_on_as(&from("speed-asymmetry", Scope::All, 24.1)));
     }
 }

@@ -3,7 +3,8 @@
 use xt28_sim::effects::Effect;
 
 use super::belief::Base;
-use super::candidates::{Candidate, Docket};
+use super::candidate::Candidate;
+use super::candidates::Docket;
 use super::excitation::Shown;
 use super::how_far::HowFar;
 use super::hypothesis::{Fit, Hypothesis};

@@ -42,6 +42,9 @@ pub struct Fit {
     pub onset: Onset,
     /// Logarithm of its evidence over that of the base, prior included.
     pub log_evidence: f64,
+    /// What of that was paid for its sizes, its beginning and its wheels, nats: the more of them could have
+    /// been otherwise, the dearer.
+    pub price: f64,
 }
 
 impl Fit {
@@ -186,9 +189,10 @@ impl Hypothesis {
         let of = |moved: &[f64]| self.cost(evidence, onset, moved);
         let Spread { sigma, log_share } = Spread::about(&of, &values, cost, self.effect.parameters);
         let beginning = if onset.is_late() { BEGINNINGS.ln() } else { 0.0 };
-        let log_evidence =
-            0.5 * (evidence.base_cost() - cost) + log_share - beginning + self.log_prior();
-        Fit { hypothesis: *self, values, sigma, onset, log_evidence }
+        let price = 0.5 * self.disbelief(&values) - log_share + beginning - self.log_prior();
+        let explained = 0.5 * (evidence.base_cost() - cost + self.disbelief(&values));
+        let log_evidence = explained - price;
+        Fit { hypothesis: *self, values, sigma, onset, log_evidence, price }
     }
 }
 

@@ -97,7 +97,7 @@ mod tests {
     use xt28_machine::{Machine, Wheel};
     use xt28_sim::effects::{Block, Scope};
 
-    use super::super::candidates::Candidate;
+    use super::super::candidate::Candidate;
     use super::super::floor::Signal;
     use super::super::generator::Generator;
     use super::super::knob::Knob;

@@ -4,7 +4,7 @@
 //! law on each make, so how the machine stands is no evidence of it. Its wheels are then as likely as one another by
 //! what is explained; and the likeliest may leave what no right answer does, where others leave nothing.
 
-use super::candidates::Candidate;
+use super::candidate::Candidate;
 use super::judgement::{Findings, temperature};
 use super::scales::Scales;
 

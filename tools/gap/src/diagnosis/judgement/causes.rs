@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::Findings;
 use crate::diagnosis::beginning::Beginning;
-use crate::diagnosis::candidates::Candidate;
+use crate::diagnosis::candidate::Candidate;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::scales::turned;
 use crate::diagnosis::verdict::{Cause, Estimate};

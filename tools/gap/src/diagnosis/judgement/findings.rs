@@ -1,6 +1,6 @@
 //! What the logs say of every hypothesis, before it is judged.
 
-use super::super::candidates::Candidate;
+use super::super::candidate::Candidate;
 use super::super::evidence::{Echo, Left, Uneven};
 use super::super::knob::Knob;
 use super::super::scales::Grounds;

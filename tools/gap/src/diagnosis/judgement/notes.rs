@@ -1,7 +1,7 @@
 //! What a reader of the verdict should know beside it, a sentence each.
 
 use super::super::agreement::axles_alike;
-use super::super::candidates::Candidate;
+use super::super::candidate::Candidate;
 use super::super::evidence::Left;
 use super::super::floor::Signal;
 use super::super::floors::Floors;

@@ -1,7 +1,7 @@
 //! What speaks against the best cause or pair: a signal that it leaves, an echo of itself in that, a size that
 //! is not one, or tolerances that would have to bend.
 
-use super::super::candidates::Candidate;
+use super::super::candidate::Candidate;
 use super::super::evidence::Left;
 use super::super::floor::Signal;
 use super::super::generator::Generator;

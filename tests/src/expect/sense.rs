@@ -19,6 +19,11 @@ fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
         if value.as_array().is_some_and(Vec::is_empty) {
             return Some(format!("{key} = [] must name at least one"));
         }
+        if let ("states", Some(state)) = (key.as_str(), stays(value)) {
+            return Some(format!(
+                "{key} has {state:?} twice in a row, and each counts once when it is entered"
+            ));
+        }
         let numbers = match value {
             Value::Array(list) => list.iter().filter_map(number).collect(),
             one => number(one).into_iter().collect::<Vec<_>>(),
@@ -31,6 +36,12 @@ fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
         let falls = numbers.windows(2).find(|pair| pair[0] > pair[1])?;
         Some(format!("{key} = [{}, {}] must not fall", falls[0], falls[1]))
     })
+}
+
+/// The name that a list has twice in a row.
+fn stays(value: &Value) -> Option<&str> {
+    let same = value.as_array()?.windows(2).find(|pair| pair[0].is_str() && pair[0] == pair[1])?;
+    same[0].as_str()
 }
 
 fn of_number(keys: &Table, (key, value): (&str, f64), duration_s: f64) -> Option<String> {
@@ -76,6 +87,7 @@ mod tests {
             "x_m = -3",
             "from_kn = 2, to_kn = 2",
             "rise_s = [1.0, 1.0]",
+            r#"states = ["standby", "active", "standby"]"#,
         ] {
             assert_eq!(of(sound), "", "{sound}");
         }
@@ -90,6 +102,10 @@ mod tests {
             ("from = 0.3, below = 0.2", "stands-still: from = 0.3 must be at most below = 0.2"),
             ("at_most_kn = -1", "stands-still: at_most_kn = -1 must be at least zero"),
             ("rise_s = [1.2, 0.9]", "stands-still: rise_s = [1.2, 0.9] must not fall"),
+            (
+                r#"states = ["standby", "active", "active"]"#,
+                "stands-still: states has \"active\" twice in a row, and each counts once when it is entered",
+            ),
         ] {
             assert_eq!(of(keys), wanted);
         }

@@ -78,7 +78,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
     Ok(run.until_done(args))
 }
 
-/// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting.
+/// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting, and has the log to within a tick.
 fn watch_signals() -> std::io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
@@ -141,8 +141,11 @@ impl Run {
             self.tick(now, &mut out)?;
             tell(now, &mut told, &self.gateway);
             self.end_if_due(now, args);
-            if self.ending && self.gateway.is_silent() {
-                return Ok(());
+            if self.ending {
+                if self.gateway.is_silent() {
+                    return Ok(());
+                }
+                self.wire.keep();
             }
             due += TICK;
             // The schedule is absolute; a tick whose successor is due already is not made up for.

@@ -136,6 +136,13 @@ impl Wire {
         self.log.as_ref().is_none_or(|log| log.broke.is_none())
     }
 
+    /// Writes out the log so far: of a run that is about to end nothing is lost to whoever does not wait for it.
+    pub(crate) fn keep(&mut self) {
+        if let Some(log) = &mut self.log {
+            log.keep();
+        }
+    }
+
     /// Writes out the log.
     pub(crate) fn close(self) -> Result<(), Problem> {
         self.log.map_or(Ok(()), Log::close).map_err(Problem::Log)
@@ -176,9 +183,16 @@ impl<W: Write> Log<W> {
         }
     }
 
+    fn keep(&mut self) {
+        if self.broke.is_none() {
+            self.broke = self.writer.flush().err();
+        }
+    }
+
     /// What went wrong first.
     fn close(mut self) -> io::Result<()> {
-        self.broke.map_or_else(|| self.writer.flush(), Err)
+        self.keep();
+        self.broke.map_or(Ok(()), Err)
     }
 }
 
@@ -219,6 +233,17 @@ mod tests {
         (0..3).for_each(|_| log.write(SimTime::ZERO, &frame));
         assert_eq!(log.close().unwrap_err().kind(), io::ErrorKind::WriteZero);
         assert_eq!(disk, format!("{line}(0.").into_bytes());
+    }
+
+    #[test]
+    fn a_log_that_is_kept_waits_in_no_buffer() {
+        let frame = Frame::new(CanId::Standard(1), &[]).unwrap();
+        let mut log = Log::new(Writer::new(BufWriter::new(Vec::new()), "can0"));
+        log.write(SimTime::ZERO, &frame);
+        log.keep();
+        log.write(SimTime::ZERO, &frame);
+        let disk = log.writer.into_inner();
+        assert_eq!(disk.get_ref(), b"(0.000000) can0 001#\n", "the second waits still");
     }
 
     #[test]

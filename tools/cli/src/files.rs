@@ -9,10 +9,11 @@ use crate::Failure;
 pub(crate) fn writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
     for path in paths {
         let there = path.exists();
-        let opened = OpenOptions::new().write(true).create_new(!there).open(path);
+        let opened = OpenOptions::new().write(true).create(!there).truncate(false).open(path);
         opened.map_err(|error| refusal(path, &error))?;
         if !there {
-            fs::remove_file(path)?;
+            // A link to what is not there yet stays.
+            fs::remove_file(path.canonicalize()?)?;
         }
     }
     Ok(())
@@ -128,5 +129,12 @@ mod tests {
         std::os::unix::fs::symlink("a.log", folder.path().join("link")).unwrap();
         assert!(refused(folder.path(), ["/dev/null", "/dev/null"]).is_none());
         assert!(refused(folder.path(), ["link", "a.html"]).is_some());
+        let link = folder.path().join("to-be");
+        std::os::unix::fs::symlink("new.json", &link).unwrap();
+        assert!(refused(folder.path(), ["to-be", "a.html"]).is_none());
+        assert!(
+            link.is_symlink() && !link.exists(),
+            "the link stays, and nothing is left where it points"
+        );
     }
 }

@@ -27,6 +27,11 @@ LATE_S = (8.0, 14.0)
 ONCE_IN = (2, 3, 4)
 
 
+def is_known(name: str) -> bool:
+    """Whether a catalogue of the bench has it."""
+    return TABLE[name].get("known", True)
+
+
 @dataclass(frozen=True)
 class Fault:
     """One thing that is wrong: on which wheels, and by how much."""
@@ -42,7 +47,7 @@ class Fault:
     @property
     def known(self) -> bool:
         """Whether a catalogue of the bench has it."""
-        return TABLE[self.name].get("known", True)
+        return is_known(self.name)
 
     @property
     def group(self) -> str:
@@ -104,7 +109,7 @@ def once(fault: Fault, random: np.random.Generator) -> Fault:
 
 def pairs(number: int, random: np.random.Generator) -> list[str]:
     """So many pairs of known faults in two groups each, as `draw` takes them, joined by +."""
-    known = [name for name in NAMES if TABLE[name].get("known", True)]
+    known = [name for name in NAMES if is_known(name)]
     chosen = []
     while len(chosen) < number:
         first, second = (str(name) for name in random.choice(known, 2, replace=False))

@@ -189,8 +189,9 @@ impl Hypothesis {
         let of = |moved: &[f64]| self.cost(evidence, onset, moved);
         let Spread { sigma, log_share } = Spread::about(&of, &values, cost, self.effect.parameters);
         let beginning = if onset.is_late() { BEGINNINGS.ln() } else { 0.0 };
-        let price = 0.5 * self.disbelief(&values) - log_share + beginning - self.log_prior();
-        let explained = 0.5 * (evidence.base_cost() - cost + self.disbelief(&values));
+        let disbelief = self.disbelief(&values);
+        let price = 0.5 * disbelief - log_share + beginning - self.log_prior();
+        let explained = 0.5 * (evidence.base_cost() - cost + disbelief);
         let log_evidence = explained - price;
         Fit { hypothesis: *self, values, sigma, onset, log_evidence, price }
     }

@@ -53,6 +53,12 @@ pub(super) struct Scheduled<T> {
 }
 
 impl EffectSchedule<'_> {
+    /// The schedule as it was until the last of its effects set in; none where they always were there.
+    pub(super) fn earlier(&self) -> Option<Self> {
+        let before = Self { from_s: 0.0, effects: self.before, ..*self };
+        (self.from_s > 0.0).then_some(before)
+    }
+
     /// What `of` makes of the effects that hold when.
     pub(super) fn of<T>(&self, of: impl Fn(&Effects) -> T) -> Scheduled<T> {
         let (sound, before, is) = (of(&Effects::default()), of(self.before), of(self.effects));

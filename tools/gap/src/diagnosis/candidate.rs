@@ -80,7 +80,7 @@ impl Candidate {
         let is_on_both = |w| own.hypothesis.scope.contains(w) && other.hypothesis.scope.contains(w);
         own.onset.is_late()
             && other.onset != own.onset
-            && other.onset.later(own.onset) == other.onset
+            && own.onset.is_by(other.onset)
             && own.hypothesis.effect.block == other.hypothesis.effect.block
             && Wheel::ALL.into_iter().any(is_on_both)
     }

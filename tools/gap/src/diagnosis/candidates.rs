@@ -225,10 +225,12 @@ fn rank(all: &mut [Candidate]) {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
     use xt28_sim::effects::Scope;
 
     use super::*;
     use crate::diagnosis::generator::Generator;
+    use crate::diagnosis::generator::still::still;
     use crate::{Channel, Series, Terrain};
 
     /// A machine that drives for 20 s, is told to bend to and fro, and does not.
@@ -244,6 +246,41 @@ mod tests {
         };
         let all = Channel::all().into_iter().map(|channel| (channel, reads(channel)));
         Signals::of_series("made up", &all.collect(), 20.0, Terrain::Flat).unwrap()
+    }
+
+    /// A machine that goes east at 1.5 m/s, and from `at_s` on tells fixes by `ahead_m` and `left_m` further.
+    fn mast_is_bent(at_s: f64, [ahead_m, left_m]: [f64; 2]) -> Signals {
+        let mut s = still(30);
+        (s.fixes, s.headings) = (Vec::new(), Vec::new());
+        let radius_m = Machine::xt28().wheels.radius_m;
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(60.0e3);
+            s.wheel_speed_rad_s[w].fill(1.5 / radius_m);
+            s.smooth_wheel_speed_rad_s[w].fill(1.5 / radius_m);
+        }
+        for k in 0..240 {
+            let fix_s = 0.125 * f64::from(k);
+            let by = f64::from(u8::from(fix_s >= at_s));
+            s.fixes.push([fix_s, 1.5 * fix_s + by * ahead_m, by * left_m]);
+            s.headings.push([fix_s, 0.0, 0.0]);
+        }
+        s
+    }
+
+    #[test]
+    fn fixes_that_jump_tell_when() {
+        // Midway between two instants of those that are asked otherwise, further from each than fixes are compared over.
+        let runs = [mast_is_bent(9.0, [0.4, 0.3])];
+        let generators = vec![Generator::Travel];
+        let (machine, nothing) = (Machine::xt28(), Effects::default());
+        let fit = Evidence::watching(generators, &runs, &machine, nothing, &Knob::all());
+        let docket = Docket { fit, held: None };
+        let mut always = Candidate::made_up("gnss-lever-arm", Scope::All, 1.0);
+        always.fit.values = vec![0.2, 0.1];
+        let found = docket.set_in(&always).expect("a jump of half a metre");
+        assert!((found.fit.onset.at_s() - 9.0).abs() < 0.13, "{:?}", found.fit.onset);
+        let each = found.fit.values.iter().zip([0.4, 0.3]);
+        each.for_each(|(is, was)| assert!((is - was).abs() < 0.05, "{:?}", found.fit.values));
     }
 
     #[test]

@@ -147,10 +147,12 @@ impl Inquiry {
         }
         let again = tested(beside(&second).candidates(&others(&second, &likely)), shown);
         if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
+            let mut better = better.clone();
+            better.fit.onset = better.fit.onset.or_as_alone(first.fit.onset, second.fit.onset);
             // Its second was found, and is judged, beside the one that is told: one that stays within what
             // is known of it is left as it was.
             if better.fit.parts_from(&first.fit) {
-                first = better.clone();
+                first = better;
                 court = beside(&first);
                 seconds = seconds_of(&court, &first, &[second.fit.hypothesis.effect]);
             }

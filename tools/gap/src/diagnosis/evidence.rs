@@ -161,7 +161,7 @@ impl<'a> Evidence<'a> {
         (0..onsets.len()).map(|k| self.cost_of(&at(k))).collect()
     }
 
-    /// What it costs to believe `effects` from each of `onsets` on.
+    /// What it costs to believe `effects` from each of `onsets` on, fixes jumping there.
     pub(super) fn onset_costs(
         &self,
         effects: &Effects,
@@ -173,7 +173,7 @@ impl<'a> Evidence<'a> {
             .iter()
             .map(|watch| {
                 if only(watch.stack.generator) {
-                    let all = watch.onsets(self.runs, &self.machine, effects, onsets);
+                    let all = watch.onsets_with_jumps(self.runs, &self.machine, effects, onsets);
                     all.into_iter().map(Cow::Owned).collect()
                 } else {
                     onsets.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()

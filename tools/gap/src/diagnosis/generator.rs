@@ -20,7 +20,7 @@ mod scrub;
 mod spool;
 mod stance;
 #[cfg(test)]
-mod still;
+pub(super) mod still;
 mod summed;
 mod traction;
 mod travel;
@@ -65,6 +65,12 @@ const ROLLING: [&str; 6] = [
 /// Effects that show in how the machine turns beside what its joints read: others turn the joints as well. A mast that
 /// is bent does where it jumps.
 const TURNING: [&str; 3] = ["gnss-latency", "gnss-lever-arm", "slippery-ground"];
+
+/// Whether fixes jump where an effect sets in: a receiver that is late from then on tells once more where it was.
+#[must_use]
+pub(super) fn moves_fixes(effect: &Effect) -> bool {
+    effect.name.starts_with("gnss-")
+}
 
 /// One residual generator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -139,7 +145,7 @@ impl Generator {
                     || name.starts_with("pressure-")
                     || name.starts_with("stroke-")
             }
-            Self::Travel => ROLLING.contains(&name) || name.starts_with("gnss-"),
+            Self::Travel => ROLLING.contains(&name) || moves_fixes(effect),
             Self::Turning => TURNING.contains(&name),
             Self::Bus => effect.block == Block::Bus,
         }

@@ -29,6 +29,8 @@ const LOOKED_FROM_S: [f64; 4] = [0.0, 6.0, 12.0, 18.0];
 const LATE_MIN: f64 = 6.0;
 /// How many hypotheses are followed to their best values.
 const FOLLOWED: usize = 24;
+/// What the best of an effect must gain to be followed beside them, nats.
+const MUCH: f64 = 12.0;
 /// How many starts of one hypothesis, if they are the leading ones.
 const STARTS: usize = 2;
 /// Hypotheses that count as leading.
@@ -55,20 +57,7 @@ pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> 
         .filter(|start| start.gain > GAIN_MIN)
         .collect();
     starts.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-    let mut followed: Vec<&Start> = Vec::new();
-    let mut hypotheses: Vec<Hypothesis> = Vec::new();
-    for start in &starts {
-        let known = hypotheses.iter().position(|known| *known == start.hypothesis);
-        let again = followed.iter().filter(|other| other.hypothesis == start.hypothesis).count();
-        match known {
-            Some(rank) if rank < LEADING && again < STARTS => followed.push(start),
-            None if hypotheses.len() < FOLLOWED => {
-                hypotheses.push(start.hypothesis);
-                followed.push(start);
-            }
-            _ => {}
-        }
-    }
+    let followed = followed(&starts);
     let mut fits: Vec<Fit> = followed
         .into_par_iter()
         .map(|start| start.hypothesis.refit(evidence, start.onset, &start.values))
@@ -81,6 +70,28 @@ pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> 
         }
     }
     best
+}
+
+/// Those of `starts`, the weightiest first, that are worth following: of the leading hypotheses, and the best of every
+/// effect that gains much. Where a pressure reading jumps, all that an arm can have gains by its oil that begins anew, at
+/// every scope, and would leave no place for the reading.
+fn followed(starts: &[Start]) -> Vec<&Start> {
+    let mut followed: Vec<&Start> = Vec::new();
+    let mut hypotheses: Vec<Hypothesis> = Vec::new();
+    for start in starts {
+        let known = hypotheses.iter().position(|known| *known == start.hypothesis);
+        let again = followed.iter().filter(|other| other.hypothesis == start.hypothesis).count();
+        let is_first = || hypotheses.iter().all(|known| known.effect != start.hypothesis.effect);
+        match known {
+            Some(rank) if rank < LEADING && again < STARTS => followed.push(start),
+            None if hypotheses.len() < FOLLOWED || (start.gain > MUCH && is_first()) => {
+                hypotheses.push(start.hypothesis);
+                followed.push(start);
+            }
+            _ => {}
+        }
+    }
+    followed
 }
 
 fn weight(start: &Start) -> f64 {
@@ -250,6 +261,27 @@ mod tests {
     use xt28_sim::effects::{Scope, find};
 
     use super::*;
+
+    #[test]
+    fn an_effect_that_gains_much_is_followed_beside_many_scopes_of_others() {
+        let start = |hypothesis: &Hypothesis, gain: f64| Start {
+            hypothesis: *hypothesis,
+            values: Vec::new(),
+            onset: Onset::ALWAYS,
+            gain,
+        };
+        let of = |name: &str| Hypothesis::of(&[find(name).unwrap()]);
+        let others = ["leakage-drift", "valve-hysteresis", "speed-asymmetry"].map(of).concat();
+        assert!(others.len() > FOLLOWED);
+        let mut starts: Vec<Start> = others.iter().map(|other| start(other, 90.0)).collect();
+        for (name, gain) in [("pressure-scale", MUCH + 1.0), ("stroke-scale", MUCH - 1.0)] {
+            starts.extend(of(name).iter().map(|own| start(own, gain)));
+        }
+        let followed = followed(&starts);
+        let is = |start: &&Start, name: &str| start.hypothesis.effect.name == name;
+        let count = |name: &str| followed.iter().filter(|start| is(start, name)).count();
+        assert_eq!((followed.len(), count("pressure-scale"), count("stroke-scale")), (26, 1, 0));
+    }
 
     #[test]
     fn the_grid_stays_in_range_and_names_nothing_twice() {

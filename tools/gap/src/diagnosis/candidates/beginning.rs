@@ -3,14 +3,20 @@
 use xt28_sim::effects::{Block, Parameter};
 
 use super::super::evidence::Evidence;
+use super::super::generator::moves_fixes;
 use super::super::hypothesis::Fit;
 use super::super::onset::{Onset, once_least};
 use super::{Candidate, Docket, OPEN};
 
-/// Instants of a test drive at which an effect may set in, s. Longer runs have them as much further apart.
-const SETS_IN_S: [f64; 12] = [4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 22.0, 24.0, 26.0];
+/// First and last instant of a test drive at which an effect may set in, and how far apart others lie between them, s.
+/// Longer runs have them as much later and further apart.
+const SETS_IN_S: [f64; 2] = [4.0, 26.0];
+const EVERY_RUN_STEP_S: f64 = 2.0;
 /// How far apart instants of the day lie at which an effect may set in for good, of a test drive, s.
 const ONCE_STEP_S: f64 = 4.0;
+/// How far apart instants lie where fixes jump with what sets in, s: they do so over the second between two of which
+/// a speed is made, and any further from it nothing is explained of that.
+const JUMP_STEP_S: f64 = 0.5;
 /// How many of the leading hypotheses are asked when they set in.
 pub(super) const ASKED: usize = 6;
 /// How many are asked beside them that set in late, whatever they foretell.
@@ -22,7 +28,8 @@ const BEGINNING_MIN: f64 = 6.0;
 const BEGUN_SIGMA: f64 = 2.0;
 /// Tolerances that are next to nothing, and yet more than rounding.
 const BARELY: f64 = 2.0e-3;
-/// What it must gain with the values of an effect that was always there, nats; else it is not asked.
+/// What it must gain with the values of an effect that was always there, nats; else it is not asked. But for one with
+/// which fixes jump: those values are as of one with which they do not.
 const BEGINNING_HINT: f64 = 2.0;
 /// How far apart beginnings that the runs fitted may leave open are tried, s, first all over a run and then about
 /// the best: nothing of it shows until a machine moves.
@@ -44,13 +51,20 @@ impl Docket<'_> {
         };
         let whole = hypothesis.gain(&self.fit, onset, values);
         let stretch = self.fit.stretch();
-        let each = best(&SETS_IN_S.map(|at_s| Onset::in_every_run(at_s * stretch)))?;
-        let once = best(&self.fit.onsets_on_the_day(ONCE_STEP_S * stretch));
+        let jumps = moves_fixes(hypothesis.effect);
+        let [each_step_s, once_step_s] = if jumps {
+            [JUMP_STEP_S; 2]
+        } else {
+            [EVERY_RUN_STEP_S, ONCE_STEP_S].map(|step_s| step_s * stretch)
+        };
+        let each = best(&onsets_in_every_run(SETS_IN_S.map(|at_s| at_s * stretch), each_step_s))?;
+        let once = best(&self.fit.onsets_on_the_day(once_step_s));
         let other = each.0.max(whole);
         let least = if onset.is_once() { each.0 } else { other + once_least(other) };
         let once = once.filter(|once| once.0 > least);
         let (gain, at) = once.unwrap_or(each);
-        if !onset.is_late() && gain < whole + BEGINNING_HINT {
+        let hint = if jumps { f64::NEG_INFINITY } else { BEGINNING_HINT };
+        if !onset.is_late() && gain < whole + hint {
             return None;
         }
         let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at, values)));
@@ -73,7 +87,7 @@ impl Docket<'_> {
             let starts = [&self.fit, held].map(Evidence::starts_on_the_day_s).concat();
             (self.fit.last_of_the_day_s(), starts)
         } else {
-            (SETS_IN_S[SETS_IN_S.len() - 1] * self.fit.stretch(), Vec::new())
+            (SETS_IN_S[1] * self.fit.stretch(), Vec::new())
         };
         // The middle of those within `reach_s` of `about_s` that suit all runs best.
         let best = |about_s: f64, reach_s: f64, step_s: f64| -> Option<f64> {
@@ -133,6 +147,12 @@ impl Docket<'_> {
         }
         fit
     }
+}
+
+/// From `first_s` to `last_s` of every run, `step_s` apart.
+fn onsets_in_every_run([first_s, last_s]: [f64; 2], step_s: f64) -> Vec<Onset> {
+    let steps = ((last_s - first_s) / step_s).round() as u32;
+    (0..=steps).map(|k| Onset::in_every_run(first_s + f64::from(k) * step_s)).collect()
 }
 
 /// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on

@@ -146,6 +146,14 @@ impl Stack {
         }
     }
 
+    /// Whether fixes that it looks at jump where `effects` set in.
+    pub(super) fn jumps(&self, effects: &Effects) -> bool {
+        let receiver =
+            |effects: &Effects| (effects.sensors.gnss_latency, effects.sensors.gnss_lever_arm);
+        matches!(self.generator, Generator::Travel | Generator::Turning)
+            && receiver(effects) != receiver(&self.base.effects)
+    }
+
     /// Sum of squares of `values` in each group.
     pub(super) fn squares(&self, values: &[f64]) -> Vec<f64> {
         let mut squares = vec![0.0; self.groups.len()];

@@ -20,7 +20,7 @@ use xt28_sim::Parts;
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::instant::Instant;
-use crate::diagnosis::signals::{Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals};
 use beside::Beside;
 use carried::Carrier;
 pub(super) use holds::{Held, Holds};
@@ -105,8 +105,7 @@ pub(super) fn read_at_s(signal: Signal, at_s: f64) -> f64 {
     }
 }
 
-/// Stance over a run. Sensors that were others until late in it are so here too, as what sways is told beside what was
-/// before; of all else, what is before is as if it had always been so.
+/// Stance over a run, as what was believed then has it: what sways is told beside what was before.
 #[must_use]
 pub(super) fn stance_errors(
     s: &Signals,
@@ -114,8 +113,16 @@ pub(super) fn stance_errors(
     schedule: EffectSchedule<'_>,
 ) -> StanceErrors {
     let instants = s.instants(|| instants::instants(s, machine));
-    let each =
-        Beside::each(s, schedule).into_iter().map(|m| errors(s, machine, schedule, &m, instants));
+    let each = Beside::each(s, schedule).into_iter().map(|beside| {
+        let mut all = errors(s, machine, schedule, &beside, instants);
+        // Tyres that go soft underway let the machine down, and no more than that.
+        if let Some(earlier) = schedule.earlier() {
+            let then = instants.iter().take_while(|i| i.sample as f64 * DT_S < schedule.from_s);
+            let before = errors(s, machine, earlier, &beside, instants);
+            all.iter_mut().zip(before).zip(then).for_each(|((is, was), _)| *is = was);
+        }
+        all
+    });
     let errors = each.min_by(|a, b| tilted(a).total_cmp(&tilted(b))).unwrap_or_default();
     let of = |value: &dyn Fn(&Error) -> f64| {
         let standing: Samples = errors.iter().step_by(STANDING).map(value).collect();
@@ -300,4 +307,48 @@ fn weigh(
         (x + high_m * ahead) * share - middle_x,
         (y + high_m * left) * share - middle_y,
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_sim::Effects;
+
+    use super::super::still::still;
+    use super::*;
+
+    /// Change of pitch within seconds, floors, of a machine that is believed to have soft front tyres from 8 s on, and
+    /// that has its nose `sinks_rad` lower from then on.
+    fn sways(sinks_rad: f64) -> Samples {
+        let mut s = still(20);
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(50.0e3);
+            s.chamber_pa[w] = Default::default();
+            for stroke_m in [&mut s.stroke_reading_m, &mut s.stroke_m, &mut s.smooth_stroke_m] {
+                stroke_m[w].fill(0.17);
+            }
+        }
+        s.pitch_rad[800..].fill(-sinks_rad);
+        let (sound, mut soft) = (Effects::default(), Effects::default());
+        for w in [Wheel::Fr, Wheel::Fl] {
+            soft.wheels[w].soft_tyre.stiffness_n_m = 5.0e5;
+        }
+        let late = EffectSchedule { before: &sound, from_s: 8.0, effects: &soft, since_s: 0.0 };
+        let errors = stance_errors(&s, &Machine::xt28(), late);
+        errors
+            .pitch_sway_rad
+            .into_iter()
+            .map(|sway| sway / Signal::PitchSway.floor().sigma)
+            .collect()
+    }
+
+    #[test]
+    fn tyres_that_go_soft_underway_let_the_machine_down_once() {
+        // A second after, when the attitude's filter has followed.
+        let floors = |sinks_rad: f64| {
+            let after = sways(sinks_rad).into_iter().skip(90);
+            after.fold(0.0_f64, |most, sway| most.max(sway.abs()))
+        };
+        let [stands, sinks] = [0.0, 0.0098].map(floors);
+        assert!(stands > 5.0 && sinks < 0.6, "{stands} {sinks}");
+    }
 }

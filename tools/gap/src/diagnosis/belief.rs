@@ -52,17 +52,23 @@ pub(super) struct Scheduled<T> {
     from_s: f64,
 }
 
-impl EffectSchedule<'_> {
-    /// The schedule as it was until the last of its effects set in; none where they always were there.
-    pub(super) fn earlier(&self) -> Option<Self> {
-        let before = Self { from_s: 0.0, effects: self.before, ..*self };
-        (self.from_s > 0.0).then_some(before)
+impl<'e> EffectSchedule<'e> {
+    /// The schedule as it was until the last of its effects set in, and when that was, s; none where they always were
+    /// there. Before the base there is nothing but what is `sound`.
+    pub(super) fn earlier(&self, sound: &'e Effects) -> Option<(Self, f64)> {
+        let (before, until_s) = if self.from_s > self.since_s {
+            (self.before, self.from_s)
+        } else {
+            (sound, self.since_s)
+        };
+        (until_s > 0.0).then_some((Self { from_s: 0.0, effects: before, ..*self }, until_s))
     }
 
-    /// What `of` makes of the effects that hold when.
-    pub(super) fn of<T>(&self, of: impl Fn(&Effects) -> T) -> Scheduled<T> {
+    /// What `of` makes of the effects that hold when. Where the base changes nothing of it, the belief may before.
+    pub(super) fn of<T: PartialEq>(&self, of: impl Fn(&Effects) -> T) -> Scheduled<T> {
         let (sound, before, is) = (of(&Effects::default()), of(self.before), of(self.effects));
-        Scheduled { sound, before, is, since_s: self.since_s, from_s: self.from_s }
+        let since_s = if before == sound { 0.0 } else { self.since_s };
+        Scheduled { sound, before, is, since_s, from_s: self.from_s }
     }
 }
 
@@ -86,5 +92,24 @@ impl<'e> From<&'e Effects> for EffectSchedule<'e> {
 impl<'e> From<&'e Effects> for Belief<'e> {
     fn from(effects: &'e Effects) -> Self {
         Self { effects, onset: Onset::ALWAYS }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_belief_is_there_before_a_base_that_is_about_something_else() {
+        let (mut before, mut effects) = (Effects::default(), Effects::default());
+        before.sensors.gnss_latency.delay_s = 0.2;
+        effects.sensors.gnss_latency.delay_s = 0.2;
+        effects.sensors.imu_offset.roll_rad = 0.1;
+        let schedule =
+            EffectSchedule { before: &before, from_s: 4.0, effects: &effects, since_s: 8.0 };
+        let late_s = schedule.of(|effects| effects.sensors.gnss_latency.delay_s);
+        let roll_rad = schedule.of(|effects| effects.sensors.imu_offset.roll_rad);
+        let told = [3.0, 6.0, 9.0].map(|at_s| (*late_s.at(at_s), *roll_rad.at(at_s)));
+        assert_eq!(told, [(0.0, 0.0), (0.0, 0.1), (0.2, 0.1)]);
     }
 }

@@ -15,7 +15,7 @@ mod strained;
 mod sway;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::Parts;
+use xt28_sim::{Effects, Parts};
 
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
@@ -113,11 +113,12 @@ pub(super) fn stance_errors(
     schedule: EffectSchedule<'_>,
 ) -> StanceErrors {
     let instants = s.instants(|| instants::instants(s, machine));
+    let sound = Effects::default();
     let each = Beside::each(s, schedule).into_iter().map(|beside| {
         let mut all = errors(s, machine, schedule, &beside, instants);
         // Tyres that go soft underway let the machine down, and no more than that.
-        if let Some(earlier) = schedule.earlier() {
-            let then = instants.iter().take_while(|i| i.sample as f64 * DT_S < schedule.from_s);
+        if let Some((earlier, until_s)) = schedule.earlier(&sound) {
+            let then = instants.iter().take_while(|i| i.sample as f64 * DT_S < until_s);
             let before = errors(s, machine, earlier, &beside, instants);
             all.iter_mut().zip(before).zip(then).for_each(|((is, was), _)| *is = was);
         }
@@ -311,14 +312,12 @@ fn weigh(
 
 #[cfg(test)]
 mod tests {
-    use xt28_sim::Effects;
-
     use super::super::still::still;
     use super::*;
 
-    /// Change of pitch within seconds, floors, of a machine that is believed to have soft front tyres from 8 s on, and
-    /// that has its nose `sinks_rad` lower from then on.
-    fn sways(sinks_rad: f64) -> Samples {
+    /// Change of pitch within seconds, floors, of a machine that has its nose `sinks_rad` lower from 8 s on, and that is
+    /// believed, or known by the base, to have soft front tyres from then on.
+    fn sways(sinks_rad: f64, is_base: bool) -> Samples {
         let mut s = still(20);
         for w in Wheel::ALL {
             s.cylinder_load_n[w].fill(50.0e3);
@@ -333,7 +332,8 @@ mod tests {
             soft.wheels[w].soft_tyre.stiffness_n_m = 5.0e5;
         }
         let late = EffectSchedule { before: &sound, from_s: 8.0, effects: &soft, since_s: 0.0 };
-        let errors = stance_errors(&s, &Machine::xt28(), late);
+        let base = EffectSchedule { since_s: 8.0, ..(&soft).into() };
+        let errors = stance_errors(&s, &Machine::xt28(), if is_base { base } else { late });
         errors
             .pitch_sway_rad
             .into_iter()
@@ -344,11 +344,13 @@ mod tests {
     #[test]
     fn tyres_that_go_soft_underway_let_the_machine_down_once() {
         // A second after, when the attitude's filter has followed.
-        let floors = |sinks_rad: f64| {
-            let after = sways(sinks_rad).into_iter().skip(90);
-            after.fold(0.0_f64, |most, sway| most.max(sway.abs()))
-        };
-        let [stands, sinks] = [0.0, 0.0098].map(floors);
-        assert!(stands > 5.0 && sinks < 0.6, "{stands} {sinks}");
+        for is_base in [false, true] {
+            let floors = |sinks_rad: f64| {
+                let after = sways(sinks_rad, is_base).into_iter().skip(90);
+                after.fold(0.0_f64, |most, sway| most.max(sway.abs()))
+            };
+            let [stands, sinks] = [0.0, 0.0098].map(floors);
+            assert!(stands > 5.0 && sinks < 0.6, "{stands} {sinks}");
+        }
     }
 }

@@ -67,7 +67,13 @@ impl Docket<'_> {
         if !onset.is_late() && gain < whole + hint {
             return None;
         }
-        let late = self.weighed(self.begun(hypothesis.refit(&self.fit, at, values)));
+        let begun = |fit: Fit| self.weighed(self.begun(fit));
+        let mut late = begun(hypothesis.refit(&self.fit, at, values));
+        // As if it had always been there, what sums up or remembers may seem to begin anywhere.
+        if onset.is_late() {
+            let nearby = begun(found.fit.clone());
+            late = if nearby.score() > late.score() { nearby } else { late };
+        }
         let better = if late.score() > found.score() { &late } else { found };
         if better.fit.onset.is_once() {
             return Some(self.once_or_always(better.clone()));

@@ -1,6 +1,6 @@
 //! When an effect sets in: at some instant of every run, or once on the day.
 
-use xt28_sim::effects::{Block, Parameter};
+use xt28_sim::effects::{Block, Effect, Parameter};
 
 use super::super::evidence::Evidence;
 use super::super::generator::moves_fixes;
@@ -50,21 +50,15 @@ impl Docket<'_> {
             each.max_by(|a, b| a.0.total_cmp(&b.0))
         };
         let whole = hypothesis.gain(&self.fit, onset, values);
-        let stretch = self.fit.stretch();
-        let jumps = moves_fixes(hypothesis.effect);
-        let [each_step_s, once_step_s] = if jumps {
-            [JUMP_STEP_S; 2]
-        } else {
-            [EVERY_RUN_STEP_S, ONCE_STEP_S].map(|step_s| step_s * stretch)
-        };
-        let each = best(&onsets_in_every_run(SETS_IN_S.map(|at_s| at_s * stretch), each_step_s))?;
-        let once = best(&self.fit.onsets_on_the_day(once_step_s));
+        let [every_run, on_the_day] = self.onsets(hypothesis.effect);
+        let (each, once) = (best(&every_run)?, best(&on_the_day));
         let other = each.0.max(whole);
         let least = if onset.is_once() { each.0 } else { other + once_least(other) };
         let once = once.filter(|once| once.0 > least);
         let (gain, at) = once.unwrap_or(each);
-        let hint = if jumps { f64::NEG_INFINITY } else { BEGINNING_HINT };
-        if !onset.is_late() && gain < whole + hint {
+        let is_asked =
+            onset.is_late() || moves_fixes(hypothesis.effect) || gain >= whole + BEGINNING_HINT;
+        if !is_asked {
             return None;
         }
         let begun = |fit: Fit| self.weighed(self.begun(fit));
@@ -80,6 +74,21 @@ impl Docket<'_> {
         }
         let least = if onset.is_late() { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
+    }
+
+    /// When `effect` may set in: in every run, and on the day.
+    fn onsets(&self, effect: &Effect) -> [Vec<Onset>; 2] {
+        let stretch = self.fit.stretch();
+        let [every_run_s, once_s] = if moves_fixes(effect) {
+            [JUMP_STEP_S; 2]
+        } else {
+            [EVERY_RUN_STEP_S, ONCE_STEP_S].map(|step_s| step_s * stretch)
+        };
+        let [first_s, last_s] = SETS_IN_S.map(|at_s| at_s * stretch);
+        let steps = ((last_s - first_s) / every_run_s).round() as u32;
+        let every_run =
+            (0..=steps).map(|k| Onset::in_every_run(first_s + f64::from(k) * every_run_s));
+        [every_run.collect(), self.fit.onsets_on_the_day(once_s)]
     }
 
     /// One that sets in late with another beginning, of those that the runs fitted leave open, which suits the runs
@@ -153,12 +162,6 @@ impl Docket<'_> {
         }
         fit
     }
-}
-
-/// From `first_s` to `last_s` of every run, `step_s` apart.
-fn onsets_in_every_run([first_s, last_s]: [f64; 2], step_s: f64) -> Vec<Onset> {
-    let steps = ((last_s - first_s) / step_s).round() as u32;
-    (0..=steps).map(|k| Onset::in_every_run(first_s + f64::from(k) * step_s)).collect()
 }
 
 /// Those that are asked when they set in: the leading ones, and what explains the runs fitted from some instant on

@@ -65,6 +65,17 @@ impl<'a> Docket<'a> {
         all
     }
 
+    /// Puts `known` among `all` as it is worth here from its own beginning on, where nothing better was found of it: one
+    /// that begins out of sight, and sums up or remembers, is not what always was there.
+    pub(super) fn keep(&self, all: &mut Vec<Candidate>, known: &Fit) {
+        let Fit { hypothesis, onset, ref values, .. } = *known;
+        let kept = self.weighed(hypothesis.refit(&self.fit, onset, values));
+        let same = all.iter().find(|other| other.fit.hypothesis == hypothesis);
+        if same.is_none_or(|same| same.score() < kept.score()) {
+            merge(all, vec![kept]);
+        }
+    }
+
     /// What each signal leaves with tolerances where they are believed to be.
     pub(super) fn unbent(&self) -> Vec<Left> {
         self.fit.unbent()
@@ -281,6 +292,27 @@ mod tests {
         assert!((found.fit.onset.at_s() - 9.0).abs() < 0.13, "{:?}", found.fit.onset);
         let each = found.fit.values.iter().zip([0.4, 0.3]);
         each.for_each(|(is, was)| assert!((is - was).abs() < 0.05, "{:?}", found.fit.values));
+    }
+
+    #[test]
+    fn one_that_is_known_is_kept_where_nothing_better_was_found_of_it() {
+        let (runs, knobs) = ([bends()], Knob::all());
+        let machine = Machine::xt28();
+        let generators = vec![Generator::SteerEcu(0)];
+        let fit = Evidence::watching(generators, &runs, &machine, Effects::default(), &knobs);
+        let docket = Docket { fit, held: None };
+        let known = Candidate::made_up("steer-gain", Scope::All, 90.0).fit;
+        let known =
+            Fit { onset: Onset::in_every_run(6.0), values: vec![0.3; known.values.len()], ..known };
+        let mut all = vec![Candidate::made_up("arm-delay", Scope::All, 90.0)];
+        docket.keep(&mut all, &known);
+        assert_eq!(all.len(), 2);
+        let kept = all.iter().find(|one| one.fit.hypothesis == known.hypothesis).unwrap();
+        assert_eq!(kept.fit.onset, known.onset);
+        let better = Candidate::made_up("steer-gain", Scope::All, kept.score().max(0.0) + 1.0);
+        let mut all = vec![better];
+        docket.keep(&mut all, &known);
+        assert_eq!((all.len(), all[0].fit.onset), (1, Onset::ALWAYS));
     }
 
     #[test]

@@ -145,7 +145,12 @@ impl Inquiry {
                 likely.push(candidate.fit.hypothesis.effect);
             }
         }
-        let again = tested(beside(&second).candidates(&others(&second, &likely)), shown);
+        let other_court = beside(&second);
+        let mut again = other_court.candidates(&others(&second, &likely));
+        if first.fit.onset.is_late() {
+            other_court.keep(&mut again, &first.fit);
+        }
+        let again = tested(again, shown);
         if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
             let mut better = better.clone();
             better.fit.onset = better.fit.onset.or_as_alone(first.fit.onset, second.fit.onset);

@@ -149,7 +149,7 @@ impl<'a> Evidence<'a> {
             if !only(generator) {
                 return vec![watch.sums.clone(); onsets.len()];
             }
-            let again = || watch.onsets(self.runs, &self.machine, effects, onsets);
+            let again = || watch.onsets(self.runs, &self.machine, effects, onsets, false);
             if generator.wheel().is_none() {
                 return again();
             }
@@ -173,7 +173,7 @@ impl<'a> Evidence<'a> {
             .iter()
             .map(|watch| {
                 if only(watch.stack.generator) {
-                    let all = watch.onsets_with_jumps(self.runs, &self.machine, effects, onsets);
+                    let all = watch.onsets(self.runs, &self.machine, effects, onsets, true);
                     all.into_iter().map(Cow::Owned).collect()
                 } else {
                     onsets.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()

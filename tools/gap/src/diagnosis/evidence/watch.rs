@@ -182,47 +182,22 @@ impl Watch {
 
     /// The same for effects that set in at each of `onsets`, as if they had always been there, so that one run of the
     /// generator does for all. But for a valve's play: the spool would not be where it is, for as long as no command
-    /// crosses the play.
+    /// crosses the play. And for fixes that jump, where `jumps` are asked for: that is for onsets that lie close
+    /// together, as a jump at a wrong instant is worse than none.
     pub(super) fn onsets(
         &self,
         runs: &[Signals],
         machine: &Machine,
         effects: &Effects,
         onsets: &[Onset],
+        jumps: bool,
     ) -> Vec<Sums> {
-        if self.stack.plays_otherwise(effects) {
-            return self.onsets_followed(runs, machine, effects, onsets);
+        if self.stack.plays_otherwise(effects) || (jumps && self.stack.jumps(effects)) {
+            let belief = |&onset| Belief { effects, onset };
+            return onsets.iter().map(|at| self.again(runs, machine, belief(at))).collect();
         }
         let values = self.stack.again(runs, machine, effects.into());
         onsets.iter().map(|&onset| self.sums_of(&self.stitched(&values, onset))).collect()
-    }
-
-    /// The same, with what jumps where fixes do: to be asked of onsets that lie close together, as a jump at a wrong
-    /// instant is worse than none.
-    pub(super) fn onsets_with_jumps(
-        &self,
-        runs: &[Signals],
-        machine: &Machine,
-        effects: &Effects,
-        onsets: &[Onset],
-    ) -> Vec<Sums> {
-        if self.stack.jumps(effects) {
-            self.onsets_followed(runs, machine, effects, onsets)
-        } else {
-            self.onsets(runs, machine, effects, onsets)
-        }
-    }
-
-    /// The same, followed over each of `onsets`.
-    fn onsets_followed(
-        &self,
-        runs: &[Signals],
-        machine: &Machine,
-        effects: &Effects,
-        onsets: &[Onset],
-    ) -> Vec<Sums> {
-        let belief = |&onset| Belief { effects, onset };
-        onsets.iter().map(|at| self.again(runs, machine, belief(at))).collect()
     }
 
     /// `values` once the tolerances have gone by `step`.

@@ -7,8 +7,8 @@ use gateway::{Fix, Geodetic};
 
 /// Drive an Xt28 over CAN: a policy's actions become frames, under the safety kernel.
 ///
-/// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver where the policy
-/// needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
+/// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver and the controller where the
+/// policy needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
 /// that time, and SIGUSR1 is then the order to arm again after a safety stop. SIGINT and SIGTERM stop
 /// the machine, go silent, then exit. SIGUSR2 is the emergency stop: no order arms after it, only a new
 /// run does.
@@ -23,13 +23,18 @@ pub(crate) struct Args {
     pub(crate) bus: String,
 
     /// What drives: goto:X,Y,HEADING_DEG (metres east and north of the origin, degrees
-    /// counter-clockwise from east), script:FILE (timed commands, TOML) or hold
+    /// counter-clockwise from east), script:FILE (timed commands, TOML), rosbridge:[ADDRESS:]PORT (a controller
+    /// that connects there, asked at each fix; with `,tick` behind it at 100 Hz) or hold
     #[arg(long, value_name = "POLICY")]
     pub(crate) policy: String,
 
     /// Serial port of the u-blox receiver (NAV-PVT, NAV-RELPOSNED and, better, NAV-HPPOSLLH)
     #[arg(long, value_name = "DEVICE")]
     pub(crate) gnss: Option<PathBuf>,
+
+    /// Terrain file (TOML) that a controller's local height map is cut from; without it there is no such map
+    #[arg(long, value_name = "FILE")]
+    pub(crate) map: Option<PathBuf>,
 
     /// Machine file; the built-in Xt28 when left out
     #[arg(long, value_name = "FILE")]

@@ -9,6 +9,7 @@ use xt28_ubx::{Enu, LocalFrame};
 use crate::epoch::{Epoch, EpochCollector, Fix, Quality};
 use crate::frames::{self, Drive, FrameWriter};
 use crate::peer::Peer;
+use crate::policy::Answer;
 use crate::sensors::Sensors;
 use crate::status::{Status, Tally};
 use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pace, Policy, Pose};
@@ -216,20 +217,27 @@ impl Gateway {
         Some(located)
     }
 
-    /// Asks the policy, if it is its time.
+    /// Takes an answer that has come in, and asks the policy, if it is its time.
     fn ask(&mut self, now: SimTime, located: Option<Located>) {
-        let observed_at = match self.policy.pace() {
+        if let Some(Answer { command, sensed_at }) = self.policy.answer() {
+            self.request = Some(command);
+            // Not when it came: a controller that falls behind is as good as silent.
+            self.stamps.policy_ns = Some(sensed_at.as_nanos());
+        }
+        let sensed_at = match self.policy.pace() {
             Pace::Fix => located.map(|located| located.at),
             Pace::Tick => self.sensors.oldest_at(),
         };
-        let Some(observed_at) = observed_at.filter(|_| self.sensors.complete(now)) else { return };
-        let seen = self.observe(now);
-        self.request = Some(self.policy.act(&seen));
-        self.stamps.observation_ns = Some(observed_at.as_nanos());
-        self.stamps.policy_ns = Some(now.as_nanos());
+        let Some(sensed_at) = sensed_at.filter(|_| self.sensors.complete(now)) else { return };
+        let seen = self.observe(now, sensed_at);
+        self.stamps.observation_ns = Some(sensed_at.as_nanos());
+        if let Some(command) = self.policy.act(&seen) {
+            self.request = Some(command);
+            self.stamps.policy_ns = Some(now.as_nanos());
+        }
     }
 
-    fn observe(&mut self, now: SimTime) -> Observation {
+    fn observe(&mut self, now: SimTime, sensed_at: SimTime) -> Observation {
         let means = self.sensors.take_means();
         let previous_action = match &self.request {
             Some(request) => self.map.action(request, &means.stroke_m),
@@ -238,6 +246,7 @@ impl Gateway {
         let armed_at = self.armed_at.filter(|_| self.kernel.is_armed());
         Observation {
             at: now,
+            sensed_at,
             since_arming_s: armed_at.map(|at| now.since(at).as_secs_f64()),
             located: self.located,
             attitude: means.attitude,

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`Observation`] | sensors averaged between fixes, pose of the front axle |
 //! | [`policy`] | the trait, and the policies that need no network |
+//! | [`Remote`] | a controller elsewhere, over rosbridge |
 //! | [`Action`] | eight numbers in -1..1 and what they mean |
 //! | `xt28_safety` | what may leave |
 #![forbid(unsafe_code)]
@@ -21,6 +22,7 @@ mod observation;
 mod peer;
 pub mod policy;
 mod pose;
+mod remote;
 mod running;
 mod sensors;
 mod status;
@@ -33,6 +35,7 @@ pub use observation::{Located, Observation};
 pub use peer::{EcuReport, PeerState};
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
+pub use remote::{Listen, Remote, Wanted};
 pub use status::{Status, Tally};
 pub use xt28_safety::{Order, Phase, Reason};
 pub use xt28_ubx::Geodetic;

@@ -9,6 +9,9 @@ use crate::{Action, Attitude, Pose};
 pub struct Observation {
     /// When it was put together.
     pub at: SimTime,
+    /// When what it is about was sensed: the fix that it was put together for, or for a policy that is asked at
+    /// each tick the oldest of its sensors.
+    pub sensed_at: SimTime,
     /// Time since arming, s; `None` while nothing the policy says reaches the machine.
     pub since_arming_s: Option<f64>,
     /// Where the machine is; `None` before the first usable fix.

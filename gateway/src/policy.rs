@@ -1,5 +1,6 @@
 //! Where demands come from: one trait, and the policies that need no network.
 
+mod external;
 mod goto;
 mod hold;
 mod levelling;
@@ -10,10 +11,12 @@ mod script_file;
 mod spec;
 mod steering;
 
+use xt28_machine::SimTime;
 use xt28_safety::Command;
 
 use crate::Observation;
 
+pub use external::{External, Refusal, Seat, Seen};
 pub use goto::{Goto, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
 pub use hold::Hold;
 pub use script::Script;
@@ -27,11 +30,26 @@ pub trait Policy: Send {
     fn pace(&self) -> Pace;
 
     /// What it wants, given what it sees. Also asked while not armed
-    /// (`since_arming_s` is `None`), so that its first armed answer is not its first.
-    fn act(&mut self, observation: &Observation) -> Command;
+    /// (`since_arming_s` is `None`), so that its first armed answer is not its first. `None` from one
+    /// that thinks elsewhere: [`Self::answer`] has it once it is there.
+    fn act(&mut self, observation: &Observation) -> Option<Command>;
+
+    /// What it wants of its own accord, once: the answer to an observation that it was shown before.
+    fn answer(&mut self) -> Option<Answer> {
+        None
+    }
 
     /// How far it has come.
     fn outcome(&self) -> Outcome;
+}
+
+/// A demand that took its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer {
+    /// What is wanted.
+    pub command: Command,
+    /// [`Observation::sensed_at`] of what it answers. It counts as given then, however late it comes.
+    pub sensed_at: SimTime,
 }
 
 /// When a policy is asked.

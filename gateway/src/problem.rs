@@ -1,11 +1,13 @@
 //! What ends a run with exit code 2: one line that says what, where and the remedy.
 
 use std::io;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use gateway::policy::SpecError;
 use xt28_bus::socket_can::{OpenError, SocketError};
 use xt28_machine::MachineError;
+use xt28_terrain::TerrainError;
 
 /// A fault of usage or of the host.
 #[derive(Debug, thiserror::Error)]
@@ -18,6 +20,14 @@ pub(crate) enum Problem {
     Machine(#[from] MachineError),
     #[error(transparent)]
     Policy(#[from] SpecError),
+    #[error(
+        "{address}: cannot listen for a controller: {source}; see --policy, is the port taken?"
+    )]
+    Listen { address: SocketAddr, source: io::Error },
+    #[error(transparent)]
+    Map(#[from] TerrainError),
+    #[error("--map is for a controller's height map; give it with --policy rosbridge:PORT")]
+    MapUnused,
     #[error("{path}: cannot open the receiver's port: {source}; see --gnss and its permissions")]
     OpenGnss { path: PathBuf, source: io::Error },
     #[error("cannot read the receiver's port: {0}; plug it in again and restart")]

@@ -1,15 +1,21 @@
 //! The loop: frames as they come, a tick every 10 ms on an absolute schedule, no spinning.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
-use gateway::{Gateway, GatewayConfig, Order, Outcome, Pace, Phase, Reason, Status, policy};
+use gateway::{
+    Gateway, GatewayConfig, Listen, Order, Outcome, Pace, Phase, Policy, Reason, Remote, Status,
+    policy,
+};
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
+use xt28_terrain::{Terrain, TerrainError, TerrainSpec};
 
 use crate::args::Args;
+use crate::complaints::Complaints;
 use crate::freshness::Freshness;
 use crate::lateness::Lateness;
 use crate::problem::Problem;
@@ -40,7 +46,13 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         Some(path) => Machine::load(path)?,
         None => Machine::xt28(),
     };
-    let policy = policy::from_spec(&args.policy, &machine)?;
+    let config = GatewayConfig {
+        origin: args.origin,
+        fix_least: args.least_fix.into(),
+        accuracy_max_m: args.least_accuracy,
+        ..GatewayConfig::new(&machine)
+    };
+    let (policy, remote) = driver(args, &machine, &config)?;
     let port = match &args.gnss {
         Some(path) => Some(
             SerialPort::open(path)
@@ -48,12 +60,6 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         ),
         None if policy.pace() == Pace::Fix => return Err(Problem::NoGnss),
         None => None,
-    };
-    let config = GatewayConfig {
-        origin: args.origin,
-        fix_least: args.least_fix.into(),
-        accuracy_max_m: args.least_accuracy,
-        ..GatewayConfig::new(&machine)
     };
     let interrupt = watch_signals().map_err(Problem::Signals)?;
     let [arm, halt] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
@@ -66,16 +72,43 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         gateway,
         wire,
         port,
+        remote,
         interrupt,
         arm,
         halt,
         start: Instant::now(),
         freshness: Freshness::default(),
+        complaints: Complaints::default(),
         ending: false,
         never_armed: None,
         broke: None,
     };
     Ok(run.until_done(args))
+}
+
+/// What drives, and the talk with it where it thinks elsewhere.
+fn driver(
+    args: &Args,
+    machine: &Machine,
+    config: &GatewayConfig,
+) -> Result<(Box<dyn Policy>, Option<Remote>), Problem> {
+    let Some(listen) = Listen::parse(&args.policy)? else {
+        if args.map.is_some() {
+            return Err(Problem::MapUnused);
+        }
+        return Ok((policy::from_spec(&args.policy, machine)?, None));
+    };
+    let map = args.map.as_deref().map(surveyed).transpose()?;
+    let (remote, policy) = Remote::open(listen, machine, config, map)
+        .map_err(|source| Problem::Listen { address: listen.address, source })?;
+    eprintln!("gateway: a controller may connect to ws://{}", remote.address());
+    Ok((Box::new(policy), Some(remote)))
+}
+
+/// The ground as the file says that a policy is given it: with what its map leaves out.
+fn surveyed(path: &Path) -> Result<Terrain, TerrainError> {
+    let spec = TerrainSpec::load(path)?;
+    spec.build_map(&spec.build()?)
 }
 
 /// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting, and has the log to within a tick.
@@ -92,6 +125,8 @@ struct Run {
     gateway: Gateway,
     wire: Wire,
     port: Option<SerialPort>,
+    /// A controller elsewhere, where one drives.
+    remote: Option<Remote>,
     interrupt: Arc<AtomicBool>,
     /// Raised by SIGUSR1: the order to arm again, after a stop that somebody has looked at.
     arm: Arc<AtomicBool>,
@@ -99,6 +134,7 @@ struct Run {
     halt: Arc<AtomicBool>,
     start: Instant,
     freshness: Freshness,
+    complaints: Complaints,
     /// The order to disarm was given.
     ending: bool,
     never_armed: Option<Reason>,
@@ -202,8 +238,16 @@ impl Run {
         // Receiver bytes and frames came in up to here.
         let now = sim_time(now.max(self.start.elapsed()));
         let ran = matches!(self.gateway.status().phase, Phase::Armed);
+        if let Some(remote) = &mut self.remote {
+            let wanted = remote.hear(now);
+            wanted.order.into_iter().for_each(|order| self.gateway.order(order));
+            self.complaints.tell(now, &wanted.refused);
+        }
         self.gateway.tick(now, out);
         let status = self.gateway.status();
+        if let Some(remote) = &mut self.remote {
+            remote.tell(now, &status);
+        }
         if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
             (asked, status.phase, status.blocked)
         {

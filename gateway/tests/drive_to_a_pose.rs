@@ -47,7 +47,8 @@ fn drive(goal: Pose, variant: Variant, ground: Attitude) -> Drive {
         if now_s >= next_fix_s - 1e-9 {
             next_fix_s += 0.125;
             let before_rad = command.front_angle_rad;
-            command = policy.act(&vehicle.observe(SimTime::from_millis(10 * tick)));
+            let seen = vehicle.observe(SimTime::from_millis(10 * tick));
+            command = policy.act(&seen).expect("one that thinks here");
             result.chatter_deg += (command.front_angle_rad - before_rad).abs().to_degrees() / 300.0;
         }
         vehicle.step(&command);

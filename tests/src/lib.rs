@@ -7,9 +7,11 @@
 
 mod builtin;
 mod cab_script;
+mod controller;
 mod decode;
 mod digest;
 mod driven;
+mod driver;
 mod error;
 mod event;
 pub mod expect;
@@ -29,9 +31,11 @@ mod truth;
 
 pub use builtin::BUILTIN;
 pub use cab_script::CabScript;
+pub use controller::Controller;
 pub use decode::Decoder;
 pub use digest::sha256;
 pub use driven::{Driven, SafetyStop};
+pub use driver::Script;
 pub use ecu_emu::Quirks;
 pub use error::{ScenarioError, SetupError};
 pub use event::{Event, GatewayOrder, Incident, Node};
@@ -42,7 +46,7 @@ pub use lockstep::{Lockstep, RunError, STEPS_PER_TICK, TickCost};
 pub use picture::Picture;
 pub use recording::Recording;
 pub use report::{Cost, Report};
-pub use scenario::{Scenario, Script};
+pub use scenario::Scenario;
 pub use series::{Sample, Series};
 pub use setup::Setup;
 pub use trace::Trace;

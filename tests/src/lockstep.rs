@@ -11,10 +11,11 @@
 //! So both nodes' frames meet on the wire at `t`, and arbitration alone decides their order.
 
 use std::io::{self, Write};
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use ecu_emu::{Emulator, EmulatorConfig, Operator, TICK};
-use gateway::policy::SpecError;
+use gateway::policy::{External, Policy, SpecError};
 use gateway::{Gateway, GatewayConfig, Order};
 use xt28_bus::{Bitrate, NodeId, VirtualBus, candump};
 use xt28_dbc::Outbox;
@@ -25,13 +26,15 @@ use xt28_sim::effects::OverlayError;
 use crate::decode::Decoder;
 use crate::digest::HashingWriter;
 use crate::recording::Recording;
-use crate::{Driven, GatewayOrder, Incident, Node, Setup, Truth};
+use crate::{Controller, Driven, GatewayOrder, Incident, Node, Setup, Truth};
 
 /// A run under way. Call [`Lockstep::tick`] until it says that the run is over.
 pub struct Lockstep<W: Write> {
     bus: VirtualBus,
     emulator: Option<(NodeId, Emulator)>,
     gateway: Option<(NodeId, Gateway)>,
+    /// What the gateway is driven by, where that is elsewhere.
+    controller: Option<Controller>,
     /// What a gateway that was killed had said of itself.
     driven: Option<Driven>,
     events: Vec<(SimTime, Incident)>,
@@ -58,6 +61,18 @@ pub enum RunError {
     /// An effect is none that the machine can have.
     #[error(transparent)]
     Effects(#[from] OverlayError),
+    /// A controller elsewhere did not answer.
+    #[error(
+        "no answer from a controller at ws://{address} within {patience:?}{refused}; is it running?"
+    )]
+    Controller {
+        /// Where it was listened for.
+        address: SocketAddr,
+        /// How long it was waited for.
+        patience: Duration,
+        /// What was refused last, in brackets.
+        refused: String,
+    },
     /// The log could not be written.
     #[error("cannot write the log: {0}; is the disk full?")]
     Log(#[from] io::Error),
@@ -72,10 +87,31 @@ impl<W: Write> Lockstep<W> {
     /// # Errors
     /// [`RunError::Policy`], [`RunError::Effects`].
     pub fn new(setup: &Setup, log: W) -> Result<Self, RunError> {
+        let policy_at = || setup.scenario.policy_at.clone();
+        let policy =
+            setup.policy().map_err(|source| RunError::Policy { policy_at: policy_at(), source })?;
+        Self::driven_by(setup, policy, None, log)
+    }
+
+    /// The same under a controller elsewhere, whose answers the run waits for.
+    ///
+    /// # Errors
+    /// [`RunError::Effects`].
+    pub fn with_controller(
+        setup: &Setup,
+        (controller, policy): (Controller, External),
+        log: W,
+    ) -> Result<Self, RunError> {
+        Self::driven_by(setup, Box::new(policy), Some(controller), log)
+    }
+
+    fn driven_by(
+        setup: &Setup,
+        policy: Box<dyn Policy>,
+        controller: Option<Controller>,
+        log: W,
+    ) -> Result<Self, RunError> {
         let Setup { scenario, machine, overlay, solver, terrain, seed, .. } = setup;
-        let policy = setup
-            .policy()
-            .map_err(|source| RunError::Policy { policy_at: scenario.policy_at.clone(), source })?;
         let mut bus = VirtualBus::new(Bitrate::MBIT_1);
         bus.enable_tap();
         let config = EmulatorConfig {
@@ -95,6 +131,7 @@ impl<W: Write> Lockstep<W> {
             bus,
             emulator: Some(emulator),
             gateway: Some(gateway),
+            controller,
             driven: None,
             events: scenario.events.iter().map(|e| (instant(e.at_s), e.what)).collect(),
             now: SimTime::ZERO,
@@ -113,6 +150,11 @@ impl<W: Write> Lockstep<W> {
         self.now
     }
 
+    /// What a controller elsewhere was refused since the last call.
+    pub fn refused(&mut self) -> Vec<String> {
+        self.controller.as_mut().map(Controller::refused).unwrap_or_default()
+    }
+
     /// Share of the run that is done, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f64 {
@@ -123,7 +165,7 @@ impl<W: Write> Lockstep<W> {
     /// emulator's part, for callers that measure; it says the time since any fixed instant.
     ///
     /// # Errors
-    /// The log could not be written.
+    /// The log could not be written, or a controller elsewhere did not answer.
     pub fn tick(
         &mut self,
         clock: &mut dyn FnMut() -> Duration,
@@ -137,7 +179,7 @@ impl<W: Write> Lockstep<W> {
         let start = clock();
         self.tick_emulator(now);
         let emulator = clock().saturating_sub(start);
-        self.tick_gateway(now);
+        self.tick_gateway(now)?;
         self.now += TICK;
         Ok(Some(TickCost { emulator }))
     }
@@ -208,9 +250,9 @@ impl<W: Write> Lockstep<W> {
         self.truth.push((now + TICK).as_secs_f64(), &emulator.truth());
     }
 
-    fn tick_gateway(&mut self, now: SimTime) {
+    fn tick_gateway(&mut self, now: SimTime) -> Result<(), RunError> {
         let Some((node, gateway)) = &mut self.gateway else {
-            return;
+            return Ok(());
         };
         while let Some(received) = self.bus.receive(*node) {
             gateway.on_frame(received.at, &received.frame);
@@ -222,6 +264,10 @@ impl<W: Write> Lockstep<W> {
         gateway.tick(now, &mut self.outbox);
         for frame in self.outbox.frames() {
             self.bus.send(*node, now, frame);
+        }
+        match &mut self.controller {
+            Some(controller) => controller.follow(now, gateway),
+            None => Ok(()),
         }
     }
 }

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use xt28_sim::effects::Entry;
 
 use crate::cab_script::{self, CabScript};
+use crate::driver::Script;
 use crate::expect::sense;
 use crate::places::Places;
 use crate::{Event, Expectation, Ground, Incident, ScenarioError};
@@ -65,15 +66,6 @@ pub struct Scenario {
     pub expectations: Vec<Expectation>,
 }
 
-/// Text of a script policy.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Script {
-    /// Where it was found: a path, or a name among the built-in ones.
-    pub path: PathBuf,
-    /// Its TOML.
-    pub text: String,
-}
-
 /// The longest run a scenario may ask for, s.
 const DURATION_MAX_S: f64 = 3_600.0;
 
@@ -112,15 +104,7 @@ impl Scenario {
             terrain_at: format!("{}:{}", path.display(), line_of(text, "terrain")),
             source,
         })?;
-        if let Some(file) = scenario.policy.strip_prefix("script:") {
-            let script = beside.join(file);
-            let text = read(&script).map_err(|source| ScenarioError::Script {
-                policy_at: scenario.policy_at.clone(),
-                script: script.clone(),
-                source,
-            })?;
-            scenario.script = Some(Script { path: script, text });
-        }
+        scenario.read_script(beside, &read)?;
         if let Some(file) = &mut scenario.operator {
             *file = beside.join(&file);
             let cab = CabScript::read(file, &read);

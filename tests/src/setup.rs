@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use ecu_emu::UnheardEffect;
-use gateway::GatewayConfig;
 use gateway::policy::{self, Policy, SpecError};
+use gateway::{GatewayConfig, Listen};
 use xt28_machine::Machine;
 use xt28_sim::Solver;
 use xt28_sim::Terrain;
@@ -78,13 +78,25 @@ impl Setup {
         }
     }
 
+    /// Where a controller elsewhere is listened for, if one drives.
+    ///
+    /// # Errors
+    /// The address is none.
+    pub fn listen(&self) -> Result<Option<Listen>, SpecError> {
+        Listen::parse(&self.scenario.policy)
+    }
+
     /// Refuses what would be refused at the start of a run, before a file is opened for it.
     ///
     /// # Errors
     /// [`RunError::Policy`], [`RunError::Effects`].
     pub fn ensure_startable(&self) -> Result<(), RunError> {
+        let checked = match self.listen() {
+            Ok(None) => self.policy().map(drop),
+            listen => listen.map(drop),
+        };
         let policy_at = || self.scenario.policy_at.clone();
-        self.policy().map_err(|source| RunError::Policy { policy_at: policy_at(), source })?;
+        checked.map_err(|source| RunError::Policy { policy_at: policy_at(), source })?;
         self.overlay.effects(&self.machine)?;
         Ok(())
     }

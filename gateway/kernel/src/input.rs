@@ -106,8 +106,8 @@ impl Link {
 pub struct Stamps {
     /// The oldest of the sensors in [`Measured`].
     pub sensors_ns: Option<u64>,
-    /// The observation that the policy last acted on.
+    /// The observation that the policy last acted on, or was last shown.
     pub observation_ns: Option<u64>,
-    /// The policy's last answer.
+    /// The policy's last answer; of one that thinks elsewhere, the observation that it answers.
     pub policy_ns: Option<u64>,
 }

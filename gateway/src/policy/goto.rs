@@ -203,7 +203,7 @@ impl Policy for Goto {
         Pace::Fix
     }
 
-    fn act(&mut self, seen: &Observation) -> Command {
+    fn act(&mut self, seen: &Observation) -> Option<Command> {
         let dt_s = self.last_at.map_or(0.0, |last| seen.at.since(last).as_secs_f64().min(0.5));
         self.last_at = Some(seen.at);
         let hold = Arms::Position([None; 6]);
@@ -222,7 +222,7 @@ impl Policy for Goto {
             command.arms = Arms::Position(self.levelling.step(seen, dt_s).0.map(Some));
         }
         command.brake = matches!(self.stage, Stage::Ended(_));
-        command
+        Some(command)
     }
 
     fn outcome(&self) -> Outcome {

@@ -14,13 +14,13 @@ impl Policy for Hold {
         Pace::Tick
     }
 
-    fn act(&mut self, observation: &Observation) -> Command {
-        Command {
+    fn act(&mut self, observation: &Observation) -> Option<Command> {
+        Some(Command {
             throttle: 0.0,
             front_angle_rad: observation.front_joint_rad,
             arms: Arms::Position([None; 6]),
             brake: false,
-        }
+        })
     }
 
     fn outcome(&self) -> Outcome {

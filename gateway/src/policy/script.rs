@@ -129,18 +129,14 @@ impl Policy for Script {
         Pace::Tick
     }
 
-    fn act(&mut self, seen: &Observation) -> Command {
+    fn act(&mut self, seen: &Observation) -> Option<Command> {
         let here = Start { stroke_m: seen.stroke_m.0, front_angle_rad: seen.front_joint_rad };
         let Some(t_s) = seen.since_arming_s else {
             self.start = None;
             // Before arming nothing of the script is in force, not even its commands at zero.
             let arms = Arms::Position([None; 6]);
-            return Command {
-                throttle: 0.0,
-                front_angle_rad: here.front_angle_rad,
-                arms,
-                brake: false,
-            };
+            let front_angle_rad = here.front_angle_rad;
+            return Some(Command { throttle: 0.0, front_angle_rad, arms, brake: false });
         };
         self.now_s = t_s;
         let start = *self.start.get_or_insert(here);
@@ -152,7 +148,7 @@ impl Policy for Script {
                 start.stroke_m[i] = here.stroke_m[i];
             }
         }
-        command
+        Some(command)
     }
 
     fn outcome(&self) -> Outcome {
@@ -240,6 +236,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
             let zero = PerWheel::splat(0.0);
             let seen = Observation {
                 at: SimTime::ZERO,
+                sensed_at: SimTime::ZERO,
                 since_arming_s: Some(t_s),
                 located: None,
                 attitude: Attitude::default(),
@@ -251,7 +248,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
                 rear_joint_rad: 0.0,
                 previous_action: Action::default(),
             };
-            let Arms::Position(strokes) = script.act(&seen).arms else { return None };
+            let Arms::Position(strokes) = script.act(&seen)?.arms else { return None };
             strokes[0]
         })
     }

@@ -11,7 +11,7 @@ use crate::{GatewayConfig, Pose};
 #[derive(Debug, thiserror::Error)]
 pub enum SpecError {
     /// No policy of that name.
-    #[error("no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE or hold")]
+    #[error("no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE, rosbridge:PORT or hold")]
     Unknown {
         /// What was given.
         spec: String,
@@ -24,12 +24,28 @@ pub enum SpecError {
         /// What was given.
         spec: String,
     },
+    /// The address of a `rosbridge` is none.
+    #[error(
+        "bad address in {spec:?}; give rosbridge:9090 for controllers on this machine, \
+         rosbridge:192.168.0.5:9090 to listen there, and ,tick behind it for 100 Hz"
+    )]
+    Address {
+        /// What was given.
+        spec: String,
+    },
+    /// A controller elsewhere, where nothing listens for one.
+    #[error("{spec:?} needs a program that listens; give it to `gateway` or to `xt28 run`")]
+    Elsewhere {
+        /// What was given.
+        spec: String,
+    },
     /// The script was refused.
     #[error(transparent)]
     Script(#[from] ScriptError),
 }
 
-/// The policy that `spec` names: `goto:X,Y,HEADING_DEG`, `script:FILE` or `hold`.
+/// The policy that `spec` names: `goto:X,Y,HEADING_DEG`, `script:FILE` or `hold`. A controller elsewhere is had by
+/// [`crate::Remote`].
 ///
 /// # Errors
 /// [`SpecError`], with what would be right.
@@ -44,6 +60,9 @@ pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecE
             Ok(Box::new(Script::load(Path::new(file), &limits)?))
         }
         None if spec == "hold" => Ok(Box::new(Hold)),
+        _ if crate::Listen::parse(spec)?.is_some() => {
+            Err(SpecError::Elsewhere { spec: spec.to_owned() })
+        }
         _ => Err(SpecError::Unknown { spec: spec.to_owned() }),
     }
 }
@@ -80,6 +99,8 @@ mod tests {
             let error = from_spec(bad, &machine).err().unwrap().to_string();
             assert!(error.starts_with("no policy"), "{error}");
         }
+        let error = from_spec("rosbridge:9090", &machine).err().unwrap().to_string();
+        assert!(error.contains("xt28 run"), "{error}");
         let error = from_spec("script:no/such.toml", &machine).err().unwrap().to_string();
         assert!(error.contains("no/such.toml") && error.contains("existing file"), "{error}");
     }

@@ -129,6 +129,7 @@ impl Vehicle {
             [self.speed_m_s * cos + of(0.075), self.speed_m_s * sin + of(0.075), of(0.025)];
         Observation {
             at,
+            sensed_at: at,
             since_arming_s: Some(at.as_secs_f64()),
             located: Some(Located { at, pose, velocity_m_s }),
             attitude: self.attitude(),

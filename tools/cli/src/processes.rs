@@ -42,7 +42,7 @@ pub(crate) fn run(
 ) -> Result<(Recording, Cost), Failure> {
     // Opened only to be refused here, with one message, rather than by three programs.
     SocketCan::open(bus)?;
-    setup.policy()?;
+    setup.ensure_startable()?;
     // Gone with the run, and nobody else's: machines in containers may share process numbers and /tmp.
     let scratch = tempfile::Builder::new().prefix("xt28-run-").tempdir()?;
     let folder = scratch.path();
@@ -167,14 +167,18 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
         fs::write(&file, mishaps.to_toml())?;
         add("--mishaps", file.display().to_string());
     }
-    // The emulator finds the files that the terrain names beside its terrain file, which is new.
-    let terrain = setup.scenario.terrain.spec.clone().beside(&env::current_dir()?);
-    if terrain != TerrainSpec::default() {
-        let file = folder.join("terrain.toml");
-        fs::write(&file, terrain.to_toml()?)?;
-        add("--terrain", file.display().to_string());
+    if setup.scenario.terrain.spec != TerrainSpec::default() {
+        add("--terrain", terrain_file(setup, folder)?);
     }
     Ok(arguments)
+}
+
+/// The ground as a file. Files that it names are looked for beside it, which is new.
+fn terrain_file(setup: &Setup, folder: &Path) -> Result<String, Failure> {
+    let terrain = setup.scenario.terrain.spec.clone().beside(&env::current_dir()?);
+    let file = folder.join("terrain.toml");
+    fs::write(&file, terrain.to_toml()?)?;
+    Ok(file.display().to_string())
 }
 
 fn gateway_arguments(
@@ -196,6 +200,9 @@ fn gateway_arguments(
     add("--arm-within", duration_s.to_string());
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.display().to_string());
+    }
+    if setup.listen()?.is_some() {
+        add("--map", terrain_file(setup, folder)?);
     }
     Ok(arguments)
 }

@@ -5,7 +5,9 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use xt28_scenarios::{Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup};
+use xt28_scenarios::{
+    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup,
+};
 use xt28_sim::Solver;
 
 use crate::artefacts::Artefacts;
@@ -26,6 +28,10 @@ pub(crate) struct Run {
     /// Machine file (TOML), instead of the scenario's own
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
+    /// What drives, instead of the scenario's own policy: as `gateway --policy` has it. In lockstep the machine waits
+    /// for the answers of a controller that connects to `rosbridge:PORT`
+    #[arg(long, value_name = "POLICY")]
+    policy: Option<String>,
     /// Effects that the machine gets beside the scenario's own (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
@@ -50,6 +56,8 @@ pub(crate) struct Run {
 }
 
 const VIRTUAL: &str = "virtual";
+/// How long a controller may take to connect, and for each answer.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 impl Run {
     /// What a bare `xt28` runs.
@@ -58,6 +66,7 @@ impl Run {
             scenario: "straight-25m".to_owned(),
             seed: None,
             machine: None,
+            policy: None,
             effects: None,
             solver: Solver::default(),
             bus: VIRTUAL.to_owned(),
@@ -72,6 +81,9 @@ impl Run {
         let mut scenario = Scenario::find(&self.scenario)?;
         if let Some(machine) = &self.machine {
             scenario.machine = Some(machine.clone());
+        }
+        if let Some(policy) = &self.policy {
+            scenario.drive_by(policy)?;
         }
         let mut setup = Setup::new(scenario, self.seed)?;
         setup.solver = self.solver;
@@ -100,8 +112,16 @@ impl Run {
     }
 
     fn lockstep(&self, setup: &Setup, artefacts: &Artefacts) -> Result<(Recording, Cost), Failure> {
+        let mut run = match setup.listen()? {
+            Some(listen) => {
+                let driver = Controller::open(setup, listen, PATIENCE)
+                    .map_err(|error| format!("{}: cannot listen: {error}", listen.address))?;
+                eprintln!("a controller may connect to ws://{}", driver.0.address());
+                Lockstep::with_controller(setup, driver, artefacts.log_writer()?)?
+            }
+            None => Lockstep::new(setup, artefacts.log_writer()?)?,
+        };
         let bar = progress_bar(setup);
-        let mut run = Lockstep::new(setup, artefacts.log_writer()?)?;
         let mut pace = Pace::start(self.realtime);
         let (mut emulator, mut ticks) = (Duration::ZERO, 0_u32);
         loop {
@@ -112,6 +132,9 @@ impl Run {
             };
             emulator += cost.emulator;
             ticks += 1;
+            for why in run.refused() {
+                bar.suspend(|| eprintln!("{:8.2} s  rosbridge: {why}", run.now().as_secs_f64()));
+            }
             bar.set_position(run.now().as_nanos() / 1_000_000);
         }
         let recording = run.finish().map_err(|error| artefacts.told(error))?;

@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""A controller outside the gateway, in the shape that a learnt one would have: observation in, action out.
+
+Drives to a point and levels the machine by its strokes. Run it beside one of
+
+    xt28 run straight-25m --policy rosbridge:9090
+    gateway --bus vcan0 --gnss /tmp/gnss --policy rosbridge:9090
+
+    python3 controller.py --port 9090 --east 25
+
+It needs roslibpy alone (pip install roslibpy). docs/rosbridge.md has every field of the messages.
+"""
+
+import argparse
+import math
+import sys
+import threading
+
+import roslibpy
+
+STROKE_MAX_M = 0.25
+JOINT_MAX_RAD = math.radians(25.0)
+MIDDLE_M = 0.17
+
+
+def act(seen, east_m):
+    """Eight numbers from -1 to 1: throttle, front joint, strokes FR FL MR ML BR BL."""
+    here = seen["located"]
+    if here is None:
+        return [0.0, 0.0] + [stroke_action(stroke) for stroke in seen["stroke_m"]]
+    left_m = east_m - here["east_m"]
+    throttle = max(-0.3, min(0.6, 0.4 * left_m))
+    # Back to the line north = 0, the more gently the further it is.
+    heading = math.atan2(-here["north_m"], 6.0) - here["heading_rad"]
+    joint = max(-1.0, min(1.0, 1.5 * heading / JOINT_MAX_RAD))
+    # Right side high: its arms shorter. Nose up: the front ones.
+    right, front = -0.6 * seen["roll_rad"], -0.8 * seen["pitch_rad"]
+    lift = [(right + front), (-right + front), right, -right, (right - front), (-right - front)]
+    return [throttle, joint] + [stroke_action(MIDDLE_M + metres) for metres in lift]
+
+
+def stroke_action(stroke_m):
+    return 2.0 * max(0.0, min(STROKE_MAX_M, stroke_m)) / STROKE_MAX_M - 1.0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--host", default="127.0.0.1")
+    parser.add_argument("--port", type=int, default=9090)
+    parser.add_argument("--east", type=float, default=25.0, help="where to, m east of the origin")
+    args = parser.parse_args()
+
+    ros = roslibpy.Ros(args.host, args.port)
+    ros.run(timeout=30)
+    action = roslibpy.Topic(ros, "/xt28/action", "xt28_msgs/Action")
+    finish = roslibpy.Service(ros, "/xt28/finish", "std_srvs/SetBool")
+    over = threading.Event()
+
+    def on_observation(seen):
+        if over.is_set():
+            return
+        here = seen["located"]
+        if here is not None and abs(args.east - here["east_m"]) < 0.15 and abs(seen["speed_m_s"]) < 0.05:
+            # Said before the answer, so that the machine holds from this observation on.
+            over.set()
+            finish.call(roslibpy.ServiceRequest({"data": True}), lambda _: None, None)
+        action.publish({"seq": seen["seq"], "action": act(seen, args.east)})
+
+    roslibpy.Topic(ros, "/xt28/observation", "xt28_msgs/Observation").subscribe(on_observation)
+    reached = threading.Event()
+    ros.on("close", lambda _: reached.set())
+    reached.wait()
+    ros.terminate()
+    return 0 if over.is_set() else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,198 @@
+//! A client's socket, never waited for: bytes in, texts out, and what is not taken yet is kept.
+
+use std::io::{self, ErrorKind};
+use std::net::TcpStream;
+use std::os::fd::{AsFd, BorrowedFd};
+
+use tungstenite::handshake::MidHandshake;
+use tungstenite::handshake::server::{ErrorResponse, Request, Response, ServerHandshake};
+use tungstenite::http::{StatusCode, header::ORIGIN};
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{Error, HandshakeError, Message, WebSocket};
+
+/// Longest text that a client may send, bytes: nothing that is taken here is near it.
+const TEXT_MAX: usize = 1 << 18;
+/// Most messages that are taken of one client before the others have their turn.
+const TURN: usize = 32;
+/// Most that waits to be sent, bytes: a client that is this far behind does not read any more.
+const WAITING_MAX: usize = 1 << 22;
+
+type Screen = fn(&Request, Response) -> Result<Response, ErrorResponse>;
+
+/// A client that is connected, or about to be.
+pub(crate) struct Connection {
+    /// The same socket, to be polled.
+    polled: TcpStream,
+    state: State,
+    /// Something waits to be sent.
+    pub(crate) waits: bool,
+    /// Something may have come in that was not taken yet; the socket does not tell of it again.
+    pub(crate) more: bool,
+}
+
+enum State {
+    Shaking(Box<MidHandshake<ServerHandshake<TcpStream, Screen>>>),
+    Open(Box<WebSocket<TcpStream>>),
+    /// Between two states.
+    Gone,
+}
+
+/// A connection has ended, and this is why; nothing where the client wanted it so.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct Ended(pub(crate) Option<String>);
+
+impl Connection {
+    /// Takes up a stream that was accepted.
+    pub(crate) fn begin(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nonblocking(true)?;
+        // An answer that waits for the next one to fill a packet is late.
+        stream.set_nodelay(true)?;
+        let polled = stream.try_clone()?;
+        let config = WebSocketConfig::default()
+            .read_buffer_size(1 << 14)
+            .write_buffer_size(0)
+            .max_write_buffer_size(WAITING_MAX)
+            .max_message_size(Some(TEXT_MAX))
+            .max_frame_size(Some(TEXT_MAX));
+        let shaking = ServerHandshake::start(stream, screen as Screen, Some(config));
+        Ok(Self { polled, state: State::Shaking(Box::new(shaking)), waits: false, more: false })
+    }
+
+    /// Whether the handshake is over.
+    pub(crate) const fn is_open(&self) -> bool {
+        matches!(self.state, State::Open(_))
+    }
+
+    /// Takes what has come in; each text is told to `hear`.
+    pub(crate) fn read(&mut self, mut hear: impl FnMut(&str)) -> Result<(), Ended> {
+        self.shake()?;
+        let State::Open(socket) = &mut self.state else { return Ok(()) };
+        self.more = false;
+        for _ in 0..TURN {
+            match socket.read() {
+                Ok(Message::Text(text)) => hear(text.as_str()),
+                // Some clients send their JSON as bytes.
+                Ok(Message::Binary(bytes)) => match std::str::from_utf8(&bytes) {
+                    Ok(text) => hear(text),
+                    Err(_) => return Err(Ended(Some("sent bytes that are no text".to_owned()))),
+                },
+                Ok(_) => {}
+                Err(error) => {
+                    settle(error)?;
+                    return Ok(());
+                }
+            }
+        }
+        self.more = true;
+        Ok(())
+    }
+
+    /// Sends a text, or keeps it until the client takes it. One that is not open yet gets nothing.
+    pub(crate) fn send(&mut self, text: String) -> Result<(), Ended> {
+        let State::Open(socket) = &mut self.state else { return Ok(()) };
+        if let Err(error) = socket.send(Message::text(text)) {
+            self.waits = settle(error)?;
+        }
+        Ok(())
+    }
+
+    /// Sends what waits.
+    pub(crate) fn flush(&mut self) -> Result<(), Ended> {
+        self.shake()?;
+        let State::Open(socket) = &mut self.state else { return Ok(()) };
+        self.waits = match socket.flush() {
+            Ok(()) => false,
+            Err(error) => settle(error)?,
+        };
+        Ok(())
+    }
+
+    /// Says goodbye, if the client can still hear it.
+    pub(crate) fn close(mut self) {
+        if let State::Open(socket) = &mut self.state {
+            let _ = socket.close(None).and_then(|()| socket.flush());
+        }
+    }
+
+    /// Goes on with the handshake, if it is not over.
+    fn shake(&mut self) -> Result<(), Ended> {
+        if self.is_open() {
+            return Ok(());
+        }
+        let State::Shaking(shaking) = std::mem::replace(&mut self.state, State::Gone) else {
+            return Err(Ended(None));
+        };
+        self.state = match shaking.handshake() {
+            Ok(socket) => State::Open(Box::new(socket)),
+            Err(HandshakeError::Interrupted(shaking)) => State::Shaking(Box::new(shaking)),
+            Err(HandshakeError::Failure(error)) => return Err(Ended(Some(error.to_string()))),
+        };
+        Ok(())
+    }
+}
+
+impl AsFd for Connection {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.polled.as_fd()
+    }
+}
+
+/// Keeps pages of the web out: a browser lets any page that somebody looks at connect to this machine, and names
+/// the page's host as the origin. Programs name none.
+#[allow(clippy::result_large_err, clippy::unnecessary_wraps)] // as the library has it
+fn screen(request: &Request, response: Response) -> Result<Response, ErrorResponse> {
+    let Some(origin) = request.headers().get(ORIGIN) else { return Ok(response) };
+    if origin.to_str().is_ok_and(is_local) {
+        return Ok(response);
+    }
+    let why = "pages of other hosts do not drive this machine\n".to_owned();
+    let mut refusal = ErrorResponse::new(Some(why));
+    *refusal.status_mut() = StatusCode::FORBIDDEN;
+    Err(refusal)
+}
+
+/// Whether an origin is a page of this very machine.
+fn is_local(origin: &str) -> bool {
+    let host = origin.split_once("://").map_or("", |(_, host)| host);
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if port.bytes().all(|digit| digit.is_ascii_digit()) => name,
+        _ => host,
+    };
+    matches!(name, "localhost" | "127.0.0.1" | "[::1]")
+}
+
+/// Whether an error says that the socket takes no more now; any other ends the connection.
+fn settle(error: Error) -> Result<bool, Ended> {
+    match error {
+        Error::Io(error) if error.kind() == ErrorKind::WouldBlock => Ok(true),
+        Error::Io(error) if error.kind() == ErrorKind::Interrupted => Ok(true),
+        Error::ConnectionClosed | Error::AlreadyClosed => Err(Ended(None)),
+        Error::WriteBufferFull(_) => Err(Ended(Some("does not read what it asked for".to_owned()))),
+        error => Err(Ended(Some(error.to_string()))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_local;
+
+    #[test]
+    fn pages_of_other_hosts_are_told_from_those_of_this_machine() {
+        for own in
+            ["http://localhost", "http://localhost:8080", "https://127.0.0.1:1", "http://[::1]"]
+        {
+            assert!(is_local(own), "{own}");
+        }
+        for other in [
+            "null",
+            "file://",
+            "https://example.com",
+            "https://localhost.example.com",
+            "https://example.com:80",
+            "http://127.0.0.1.example.com",
+            "http://localhost:80@example.com",
+        ] {
+            assert!(!is_local(other), "{other}");
+        }
+    }
+}

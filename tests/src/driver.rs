@@ -1,0 +1,60 @@
+//! What drives a scenario: its own policy or another, and the script that it names.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::{Scenario, ScenarioError};
+
+/// Text of a script policy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Script {
+    /// Where it was found: a path, or a name among the built-in ones.
+    pub path: PathBuf,
+    /// Its TOML.
+    pub text: String,
+}
+
+impl Scenario {
+    /// Another policy than the scenario's own, as a command line gives it.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Script`].
+    pub fn drive_by(&mut self, policy: &str) -> Result<(), ScenarioError> {
+        policy.clone_into(&mut self.policy);
+        "--policy".clone_into(&mut self.policy_at);
+        self.script = None;
+        self.read_script(Path::new(""), &|file| std::fs::read_to_string(file))
+    }
+
+    /// Reads the script that the policy names, if it names one.
+    pub(crate) fn read_script(
+        &mut self,
+        beside: &Path,
+        read: &impl Fn(&Path) -> io::Result<String>,
+    ) -> Result<(), ScenarioError> {
+        let Some(file) = self.policy.strip_prefix("script:") else { return Ok(()) };
+        let script = beside.join(file);
+        let text = read(&script).map_err(|source| ScenarioError::Script {
+            policy_at: self.policy_at.clone(),
+            script: script.clone(),
+            source,
+        })?;
+        self.script = Some(Script { path: script, text });
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_policy_takes_the_place_of_the_scenarios_script() {
+        let mut scenario = Scenario::find("arm-steps").unwrap();
+        assert!(scenario.script.is_some());
+        scenario.drive_by("goto:10,0,0").unwrap();
+        assert_eq!((scenario.policy.as_str(), &scenario.script), ("goto:10,0,0", &None));
+        let error = scenario.drive_by("script:no/such.toml").unwrap_err().to_string();
+        assert!(error.starts_with("--policy: ") && error.contains("no/such.toml"), "{error}");
+    }
+}

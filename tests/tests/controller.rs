@@ -1,0 +1,255 @@
+//! A controller outside, over rosbridge, at the wheel of a run in lockstep.
+#![allow(clippy::disallowed_methods, clippy::disallowed_macros)] // finds its client; says what is skipped
+
+use std::io::{self, Write};
+use std::net::{SocketAddr, TcpStream};
+use std::process::{Command, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use gateway::Listen;
+use serde_json::{Value, json};
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+use xt28_scenarios::{Controller, Driven, Lockstep, Recording, RunError, Scenario, Setup};
+
+/// So long without an answer is no busy machine any more.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn setup(name: &str, pace: &str) -> Setup {
+    let mut scenario = Scenario::find(name).unwrap();
+    scenario.drive_by(&format!("rosbridge:0{pace}")).unwrap();
+    let setup = Setup::new(scenario, None).unwrap();
+    setup.ensure_startable().unwrap();
+    setup
+}
+
+/// A run, and all that was refused on the way.
+struct Drive {
+    recording: Recording,
+    refused: Vec<String>,
+}
+
+impl Drive {
+    fn driven(&self) -> &Driven {
+        self.recording.driven.as_ref().unwrap()
+    }
+}
+
+/// Runs under a controller that is started once the address is known.
+fn drive<T>(setup: &Setup, start: impl FnOnce(SocketAddr) -> T) -> Result<(Drive, T), RunError> {
+    let listen = Listen::parse(&setup.scenario.policy).unwrap().unwrap();
+    let controller = Controller::open(setup, listen, PATIENCE).unwrap();
+    let started = start(controller.0.address());
+    let mut run = Lockstep::with_controller(setup, controller, io::sink())?;
+    let mut refused = Vec::new();
+    while run.tick(&mut || Duration::ZERO)?.is_some() {
+        refused.append(&mut run.refused());
+    }
+    Ok((Drive { recording: run.finish()?, refused }, started))
+}
+
+struct Client(WebSocket<MaybeTlsStream<TcpStream>>);
+
+impl Client {
+    fn connect(address: SocketAddr) -> Self {
+        let mut client = Self(tungstenite::connect(format!("ws://{address}/")).unwrap().0);
+        client.say(&json!({ "op": "subscribe", "topic": "/xt28/observation" }));
+        client
+    }
+
+    fn say(&mut self, message: &Value) {
+        // One whose server is gone has nobody to say it to.
+        let _ = self.0.send(Message::text(message.to_string()));
+    }
+
+    fn act(&mut self, seen: &Value, action: [f64; 8]) {
+        let msg = json!({ "seq": seen["seq"], "action": action });
+        self.say(&json!({ "op": "publish", "topic": "/xt28/action", "msg": msg }));
+    }
+
+    /// The next message; none once the run is over.
+    fn hear(&mut self) -> Option<Value> {
+        loop {
+            match self.0.read() {
+                Ok(Message::Text(text)) => return Some(serde_json::from_str(&text).unwrap()),
+                Ok(_) => {}
+                Err(_) => return None,
+            }
+        }
+    }
+
+    /// The next observation.
+    fn see(&mut self) -> Option<Value> {
+        loop {
+            let heard = self.hear()?;
+            if heard["op"] == "publish" {
+                return Some(heard["msg"].clone());
+            }
+        }
+    }
+}
+
+/// A controller that does `step` with each observation, and leaves once that says no.
+fn controller(
+    address: SocketAddr,
+    mut step: impl FnMut(&mut Client, &Value) -> bool + Send + 'static,
+) -> JoinHandle<()> {
+    thread::spawn(move || {
+        let mut client = Client::connect(address);
+        while let Some(seen) = client.see() {
+            if !step(&mut client, &seen) {
+                break;
+            }
+        }
+    })
+}
+
+const ONWARD: [f64; 8] = [0.4, 0.0, 0.36, 0.36, 0.36, 0.36, 0.36, 0.36];
+
+/// A stock client drives the scenario that the bench's own policy drives, and drives it the same twice.
+#[test]
+fn roslibpy_drives_to_the_goal() {
+    let found = Command::new("python3")
+        .args(["-c", "import roslibpy"])
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success());
+    if !found {
+        let wanted = "python3 with roslibpy (pip install it)";
+        assert!(std::env::var_os("CI").is_none(), "CI needs {wanted}");
+        let _ = writeln!(io::stdout(), "SKIPPED: no stock controller; it needs {wanted}");
+        return;
+    }
+    let setup = setup("straight-25m", "");
+    let once = || {
+        let (drive, mut python) = drive(&setup, |address| {
+            let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../gateway/examples/controller.py");
+            let port = address.port().to_string();
+            Command::new("python3").args([script, "--port", &port]).spawn().unwrap()
+        })
+        .unwrap();
+        assert!(python.wait().unwrap().success());
+        let report = drive.recording.report(&setup, "virtual");
+        assert!(report.passed(), "{}", report.table());
+        assert_eq!((drive.driven().outcome.as_str(), drive.refused.len()), ("reached", 0));
+        drive.recording.log_sha256
+    };
+    assert_eq!(once(), once());
+}
+
+#[test]
+fn a_controller_that_falls_silent_stops_the_machine() {
+    let setup = setup("straight-25m", "");
+    let (drive, thread) = drive(&setup, |address| {
+        controller(address, |client, seen| {
+            client.act(seen, ONWARD);
+            seen["time_s"].as_f64().unwrap() < 8.0
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    let stop = drive.driven().safety_stop.as_ref().expect("a safety stop");
+    assert_eq!(stop.reason, "policy silent");
+    assert!((8.0..8.7).contains(&stop.at_s), "{}", stop.at_s);
+    assert!(drive.refused.iter().any(|why| why.contains("has left")), "{:?}", drive.refused);
+}
+
+#[test]
+fn what_is_no_action_is_refused_with_the_remedy_and_moves_nothing() {
+    let setup = setup("straight-25m", "");
+    let (drive, thread) = drive(&setup, |address| {
+        let mut tried = false;
+        controller(address, move |client, seen| {
+            if !std::mem::replace(&mut tried, true) {
+                for msg in [
+                    json!({ "action": ONWARD }),
+                    json!({ "seq": seen["seq"], "action": [0.0, 1.0] }),
+                    json!({ "seq": seen["seq"], "action": ONWARD, "speed": 1 }),
+                    json!({ "seq": 1000, "action": ONWARD }),
+                    json!({ "seq": 0, "action": ONWARD }),
+                    json!([0.0]),
+                ] {
+                    client.say(&json!({ "op": "publish", "topic": "/xt28/action", "msg": msg }));
+                    assert_eq!(client.hear().unwrap()["op"], "status", "{msg}");
+                }
+                client.say(&json!({ "op": "call_service", "id": 1, "service": "/xt28/finish" }));
+                assert_eq!(client.hear().unwrap()["result"], false);
+            }
+            client.act(seen, [0.0; 8]);
+            seen["time_s"].as_f64().unwrap() < 3.0
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    for says in ["missing field `seq`", "invalid length 2", "unknown field `speed`", "1000 yet"] {
+        assert!(drive.refused.iter().any(|why| why.contains(says)), "{says}: {:?}", drive.refused);
+    }
+}
+
+#[test]
+fn one_drives_and_everybody_may_stop() {
+    let setup = setup("straight-25m", "");
+    let (drive, thread) = drive(&setup, |address| {
+        let mut other = None;
+        controller(address, move |client, seen| {
+            let time_s = seen["time_s"].as_f64().unwrap();
+            if time_s > 4.0 && other.is_none() {
+                let mut client = Client::connect(address);
+                let seen = client.see().unwrap();
+                client.act(&seen, [1.0; 8]);
+                let told = client.hear().unwrap();
+                assert_eq!(told["msg"], "another controller drives");
+                client.say(&json!({ "op": "call_service", "id": 1,
+                                    "service": "/xt28/emergency_stop" }));
+                while client.hear().unwrap()["op"] != "service_response" {}
+                other = Some(client);
+            }
+            client.act(seen, ONWARD);
+            true
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    let stop = drive.driven().safety_stop.as_ref().expect("a stop");
+    assert_eq!(stop.reason, "emergency stop");
+    assert!((4.0..4.3).contains(&stop.at_s), "{}", stop.at_s);
+}
+
+#[test]
+fn at_each_tick_a_controller_sees_the_machine_without_fixes_between() {
+    let setup = setup("bumpy-field", ",tick");
+    let (drive, thread) = drive(&setup, |address| {
+        let (mut count, mut last_s) = (0, 0.0);
+        controller(address, move |client, seen| {
+            let time_s = seen["time_s"].as_f64().unwrap();
+            assert!(count == 0 || (time_s - last_s - 0.01).abs() < 1e-9, "{last_s} {time_s}");
+            let map = seen["height_map_m"].as_array().map(Vec::len);
+            assert_eq!(map, seen["located"].is_object().then_some(600));
+            (count, last_s) = (count + 1, time_s);
+            client.act(seen, [0.0; 8]);
+            count < 500
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    assert_eq!(drive.driven().safety_stop.as_ref().unwrap().reason, "policy silent");
+}
+
+#[test]
+fn nobody_at_the_wheel_is_said_after_a_while() {
+    let setup = setup("straight-25m", "");
+    let listen = Listen::parse(&setup.scenario.policy).unwrap().unwrap();
+    let controller = Controller::open(&setup, listen, Duration::from_millis(50)).unwrap();
+    let mut run = Lockstep::with_controller(&setup, controller, io::sink()).unwrap();
+    let error = loop {
+        match run.tick(&mut || Duration::ZERO) {
+            Ok(ticked) => assert!(ticked.is_some(), "the run went on without a controller"),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(error.contains("ws://127.0.0.1:") && error.contains("within 50ms"), "{error}");
+    // Where nothing listens there is nothing to wait for.
+    let error = Lockstep::new(&setup, io::sink()).err().unwrap().to_string();
+    assert!(error.contains("--policy: ") && error.contains("xt28 run"), "{error}");
+}

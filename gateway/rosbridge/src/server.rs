@@ -1,15 +1,16 @@
 //! The socket: one thread that sleeps until a client says something or the owner does.
 
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind};
+use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener};
-use std::os::fd::{AsFd, OwnedFd};
+use std::os::fd::AsFd;
+use std::os::unix::net::UnixStream;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use rustix::event::{EventfdFlags, PollFd, PollFlags, Timespec, eventfd, poll};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 use serde_json::Value;
 
@@ -27,8 +28,8 @@ pub struct Server {
     address: SocketAddr,
     orders: Sender<Order>,
     events: Arc<Queue>,
-    /// Wakes the thread.
-    bell: Arc<OwnedFd>,
+    /// A byte wakes the thread.
+    bell: UnixStream,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -49,12 +50,15 @@ impl Server {
         let listener = TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
         let address = listener.local_addr()?;
-        let bell = Arc::new(eventfd(0, EventfdFlags::NONBLOCK | EventfdFlags::CLOEXEC)?);
+        let (bell, rung) = UnixStream::pair()?;
+        // One that has rung often enough to fill the socket need not ring again.
+        bell.set_nonblocking(true)?;
+        rung.set_nonblocking(true)?;
         let (orders, taken) = channel();
         let events = Arc::new(Queue::default());
         let mut desk = Desk {
             listener,
-            bell: Arc::clone(&bell),
+            rung,
             orders: taken,
             events: Arc::clone(&events),
             bridge: Bridge::new(catalogue),
@@ -97,7 +101,7 @@ impl Server {
     fn order(&self, order: Order) {
         // A thread that is gone has no clients left to hear it.
         let _ = self.orders.send(order);
-        let _ = rustix::io::write(&*self.bell, &1_u64.to_ne_bytes());
+        let _ = (&self.bell).write(&[0]);
     }
 }
 
@@ -113,7 +117,7 @@ impl Drop for Server {
 /// What the thread has.
 struct Desk {
     listener: TcpListener,
-    bell: Arc<OwnedFd>,
+    rung: UnixStream,
     orders: Receiver<Order>,
     events: Arc<Queue>,
     bridge: Bridge,
@@ -146,7 +150,7 @@ impl Desk {
         let reads = PollFlags::IN;
         let knocks = if self.deaf { PollFlags::empty() } else { reads };
         let mut fds = vec![
-            PollFd::from_borrowed_fd(self.bell.as_fd(), reads),
+            PollFd::from_borrowed_fd(self.rung.as_fd(), reads),
             PollFd::from_borrowed_fd(self.listener.as_fd(), knocks),
         ];
         for connection in self.clients.values() {
@@ -159,9 +163,8 @@ impl Desk {
             Ok(_) | Err(Errno::INTR) => {}
             Err(errno) => return Err(errno.into()),
         }
-        let mut count = [0; 8];
-        // Empty where it was not the bell.
-        let _ = rustix::io::read(&*self.bell, &mut count);
+        // Nothing where it was not the bell. What is left of many rings wakes once more.
+        let _ = (&self.rung).read(&mut [0; 256]);
         let happened = |fd: &PollFd<'_>| fd.revents();
         let mut ready = Vec::new();
         for ((client, connection), fd) in self.clients.iter().zip(&fds[2..]) {

@@ -234,6 +234,9 @@ mod tests {
         let spec = TerrainSpec::parse(text, Path::new("t.toml")).unwrap();
         let written = spec.clone().reseeded(7).reseeded(7).to_toml().unwrap();
         assert_eq!(TerrainSpec::parse(&written, Path::new("t.toml")).unwrap(), spec, "{written}");
+        let level = TerrainSpec::default();
+        let written = level.to_toml().unwrap();
+        assert_eq!(TerrainSpec::parse(&written, Path::new("t.toml")).unwrap(), level, "{written}");
     }
 
     proptest! {

@@ -149,6 +149,10 @@ impl TerrainSpec {
     /// # Errors
     /// A seed above 2^63 - 1, which no TOML can hold.
     pub fn to_toml(&self) -> Result<String, toml::ser::Error> {
+        if *self == Self::default() {
+            // A file without a layer is refused: it may have been meant to have one.
+            return Ok("kind = \"flat\"\n".to_owned());
+        }
         toml::to_string(self)
     }
 

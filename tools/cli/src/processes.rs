@@ -6,6 +6,7 @@
 mod program;
 
 use std::env;
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
@@ -136,36 +137,45 @@ fn sleep_watching(due: Instant, programs: &mut [&mut Program]) -> Result<(), Fai
     }
 }
 
-fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<String>, Failure> {
-    let mut arguments = vec!["--bus".to_owned(), bus.to_owned()];
-    let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
-    add("--duration", (setup.scenario.duration_s + BEYOND_S).to_string());
-    add("--seed", setup.seed.to_string());
-    add("--solver", setup.solver.to_string());
-    add("--truth", folder.join(TRUTH).display().to_string());
+/// The arguments of a program. Paths go as they are: not all of them are text.
+type Arguments = Vec<OsString>;
+
+/// Adds an option and its value.
+fn add(arguments: &mut Arguments, option: &str, value: impl Into<OsString>) {
+    arguments.extend([option.into(), value.into()]);
+}
+
+fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Arguments, Failure> {
+    let mut arguments = Arguments::new();
+    let mut add = |option: &str, value: OsString| add(&mut arguments, option, value);
+    add("--bus", bus.into());
+    add("--duration", (setup.scenario.duration_s + BEYOND_S).to_string().into());
+    add("--seed", setup.seed.to_string().into());
+    add("--solver", setup.solver.to_string().into());
+    add("--truth", folder.join(TRUTH).into());
     if let Some(machine) = setup.machine_file() {
-        add("--machine", machine.display().to_string());
+        add("--machine", machine.into());
     }
-    add("--profile", setup.scenario.profile.to_string());
+    add("--profile", setup.scenario.profile.to_string().into());
     let (as_is, wanted) = (Quirks::firmware().list(), setup.scenario.quirks.list());
     for ((name, on), _) in wanted.into_iter().zip(as_is).filter(|(wanted, as_is)| wanted != as_is) {
-        add("--quirk", format!("{name}={}", if on { "on" } else { "off" }));
+        add("--quirk", format!("{name}={}", if on { "on" } else { "off" }).into());
     }
     if let Some(cab) = &setup.scenario.cab {
         let file = folder.join("operator.toml");
         fs::write(&file, &cab.text)?;
-        add("--operator", file.display().to_string());
+        add("--operator", file.into());
     }
     if !setup.overlay.entries.is_empty() {
         let file = folder.join("effects.toml");
         fs::write(&file, setup.overlay.to_toml())?;
-        add("--effects", file.display().to_string());
+        add("--effects", file.into());
     }
     let mishaps = setup.scenario.mishaps();
     if !mishaps.is_empty() {
         let file = folder.join("mishaps.toml");
         fs::write(&file, mishaps.to_toml())?;
-        add("--mishaps", file.display().to_string());
+        add("--mishaps", file.into());
     }
     if setup.scenario.terrain.spec != TerrainSpec::default() {
         add("--terrain", terrain_file(setup, folder)?);
@@ -174,11 +184,11 @@ fn emulator_arguments(setup: &Setup, bus: &str, folder: &Path) -> Result<Vec<Str
 }
 
 /// The ground as a file. Files that it names are looked for beside it, which is new.
-fn terrain_file(setup: &Setup, folder: &Path) -> Result<String, Failure> {
+fn terrain_file(setup: &Setup, folder: &Path) -> Result<OsString, Failure> {
     let terrain = setup.scenario.terrain.spec.clone().beside(&env::current_dir()?);
     let file = folder.join("terrain.toml");
     fs::write(&file, terrain.to_toml()?)?;
-    Ok(file.display().to_string())
+    Ok(file.into())
 }
 
 fn gateway_arguments(
@@ -186,20 +196,20 @@ fn gateway_arguments(
     bus: &str,
     gnss: String,
     folder: &Path,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Arguments, Failure> {
     // Beyond the run's end, so that a gateway whose task is done stays on the bus to the end.
     let duration_s = setup.scenario.duration_s + BEYOND_S;
     let policy = policy_argument(setup, folder)?;
-    let mut arguments = vec!["--json".to_owned()];
-    let mut add = |option: &str, value: String| arguments.extend([option.to_owned(), value]);
-    add("--bus", bus.to_owned());
+    let mut arguments = Arguments::from(["--json".into()]);
+    let mut add = |option: &str, value: OsString| add(&mut arguments, option, value);
+    add("--bus", bus.into());
     add("--policy", policy);
-    add("--gnss", gnss);
-    add("--duration", duration_s.to_string());
+    add("--gnss", gnss.into());
+    add("--duration", duration_s.to_string().into());
     // One that nobody lets arm, as beside the firmware of 2016, is on the bus to the end as well.
-    add("--arm-within", duration_s.to_string());
+    add("--arm-within", duration_s.to_string().into());
     if let Some(machine) = setup.machine_file() {
-        add("--machine", machine.display().to_string());
+        add("--machine", machine.into());
     }
     if setup.listen()?.is_some() {
         add("--map", terrain_file(setup, folder)?);
@@ -208,13 +218,15 @@ fn gateway_arguments(
 }
 
 /// The policy as the gateway's command line takes it; a script is written to a file first.
-fn policy_argument(setup: &Setup, folder: &Path) -> Result<String, Failure> {
+fn policy_argument(setup: &Setup, folder: &Path) -> Result<OsString, Failure> {
     let Some(script) = &setup.scenario.script else {
-        return Ok(setup.scenario.policy.clone());
+        return Ok(setup.scenario.policy.clone().into());
     };
     let file = folder.join("script.toml");
     fs::write(&file, &script.text)?;
-    Ok(format!("script:{}", file.display()))
+    let mut argument = OsString::from("script:");
+    argument.push(file);
+    Ok(argument)
 }
 
 /// The emulator says where its GNSS receiver is, in the first line of its output.
@@ -239,7 +251,7 @@ mod tests {
         let arguments = gateway_arguments(&setup, "vcan0", "/dev/null".into(), folder).unwrap();
         for option in ["--duration", "--arm-within"] {
             let at = arguments.iter().position(|argument| argument == option).expect(option);
-            let until_s: f64 = arguments[at + 1].parse().unwrap();
+            let until_s: f64 = arguments[at + 1].to_str().unwrap().parse().unwrap();
             assert!(until_s > setup.scenario.duration_s, "{option} {until_s}");
         }
     }

@@ -51,7 +51,10 @@ def main():
     args = parser.parse_args()
 
     ros = roslibpy.Ros(args.host, args.port)
-    ros.run(timeout=30)
+    try:
+        ros.run(timeout=30)
+    except roslibpy.core.RosTimeoutError:
+        sys.exit(f"nothing listens at ws://{args.host}:{args.port}; start the gateway or `xt28 run` first")
     action = roslibpy.Topic(ros, "/xt28/action", "xt28_msgs/Action")
     finish = roslibpy.Service(ros, "/xt28/finish", "std_srvs/SetBool")
     over = threading.Event()
@@ -61,15 +64,19 @@ def main():
             return
         here = seen["located"]
         if here is not None and abs(args.east - here["east_m"]) < 0.15 and abs(seen["speed_m_s"]) < 0.05:
-            # Said before the answer, so that the machine holds from this observation on.
+            # Said before the answer, so that the machine holds from this observation on; and not waited for: this
+            # thread is the one that would hear the response.
             over.set()
             finish.call(roslibpy.ServiceRequest({"data": True}), lambda _: None, None)
         action.publish({"seq": seen["seq"], "action": act(seen, args.east)})
 
     roslibpy.Topic(ros, "/xt28/observation", "xt28_msgs/Observation").subscribe(on_observation)
-    reached = threading.Event()
-    ros.on("close", lambda _: reached.set())
-    reached.wait()
+    gone = threading.Event()
+    ros.on("close", lambda _: gone.set())
+    try:
+        gone.wait()
+    except KeyboardInterrupt:
+        pass
     ros.terminate()
     return 0 if over.is_set() else 1
 

@@ -35,7 +35,7 @@ pub use observation::{Located, Observation};
 pub use peer::{EcuReport, PeerState};
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
-pub use remote::{Listen, Remote, Wanted};
+pub use remote::{Listen, Remote, Waited, Wanted};
 pub use status::{Status, Tally};
 pub use xt28_safety::{Order, Phase, Reason};
 pub use xt28_ubx::Geodetic;

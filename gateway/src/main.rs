@@ -4,7 +4,6 @@
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
 
 mod args;
-mod complaints;
 mod departures;
 mod freshness;
 mod lateness;
@@ -12,6 +11,7 @@ mod problem;
 mod realtime;
 mod report;
 mod serial;
+mod talk;
 mod wire;
 
 use std::process::ExitCode;

@@ -16,7 +16,7 @@ use xt28_safety::Command;
 
 use crate::Observation;
 
-pub use external::{External, Refusal, Seat, Seen};
+pub use external::{Account, External, Refusal, Seat, Seen};
 pub use goto::{Goto, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
 pub use hold::Hold;
 pub use script::Script;

@@ -38,6 +38,8 @@ pub(crate) enum Problem {
     Record { path: PathBuf, source: io::Error },
     #[error("cannot write the log: {0}; is the disk full?")]
     Log(io::Error),
+    #[error("cannot start a thread: {0}; is the process restricted?")]
+    Thread(io::Error),
     #[error("cannot watch for signals: {0}; is the process restricted?")]
     Signals(io::Error),
     #[error("this policy steers by GNSS; give --gnss the receiver's port, as /dev/ttyACM0")]

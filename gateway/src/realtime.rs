@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
+use gateway::policy::Account;
 use gateway::{
     Gateway, GatewayConfig, Listen, Order, Outcome, Pace, Phase, Policy, Reason, Remote, Status,
     policy,
@@ -15,11 +16,11 @@ use xt28_machine::{Machine, SimTime};
 use xt28_terrain::{Terrain, TerrainError, TerrainSpec};
 
 use crate::args::Args;
-use crate::complaints::Complaints;
 use crate::freshness::Freshness;
 use crate::lateness::Lateness;
 use crate::problem::Problem;
 use crate::serial::SerialPort;
+use crate::talk::Talk;
 use crate::wire::Wire;
 
 const TICK: Duration = Duration::from_millis(10);
@@ -32,6 +33,8 @@ pub(crate) struct Finished {
     pub(crate) frames_lost: Option<u32>,
     /// Frames of ours that the bus never took.
     pub(crate) frames_discarded: u64,
+    /// How a controller elsewhere kept up, where one was to drive.
+    pub(crate) controller: Option<Account>,
     /// What went wrong with the host and ended the run.
     pub(crate) broke: Option<Problem>,
     pub(crate) interrupted: bool,
@@ -46,13 +49,15 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         Some(path) => Machine::load(path)?,
         None => Machine::xt28(),
     };
+    let listen = Listen::parse(&args.policy)?;
     let config = GatewayConfig {
         origin: args.origin,
         fix_least: args.least_fix.into(),
         accuracy_max_m: args.least_accuracy,
+        arm_at_start: listen.is_none_or(|listen| listen.address.ip().is_loopback()),
         ..GatewayConfig::new(&machine)
     };
-    let (policy, remote) = driver(args, &machine, &config)?;
+    let (policy, remote) = driver(args, listen, &machine, &config)?;
     let port = match &args.gnss {
         Some(path) => Some(
             SerialPort::open(path)
@@ -67,6 +72,12 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         signal_hook::flag::register(signal, Arc::clone(flag)).map_err(Problem::Signals)?;
     }
     let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
+    if let Some(remote) = &remote {
+        eprintln!("gateway: a controller may connect to ws://{}", remote.address());
+        if !config.arm_at_start {
+            eprintln!("gateway: others than this machine may drive, so it arms on SIGUSR1 alone");
+        }
+    }
     let gateway = Gateway::new(&machine, config, policy);
     let run = Run {
         gateway,
@@ -78,7 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         halt,
         start: Instant::now(),
         freshness: Freshness::default(),
-        complaints: Complaints::default(),
+        talk: Talk::start().map_err(Problem::Thread)?,
         ending: false,
         never_armed: None,
         broke: None,
@@ -89,10 +100,11 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
 /// What drives, and the talk with it where it thinks elsewhere.
 fn driver(
     args: &Args,
+    listen: Option<Listen>,
     machine: &Machine,
     config: &GatewayConfig,
 ) -> Result<(Box<dyn Policy>, Option<Remote>), Problem> {
-    let Some(listen) = Listen::parse(&args.policy)? else {
+    let Some(listen) = listen else {
         if args.map.is_some() {
             return Err(Problem::MapUnused);
         }
@@ -101,7 +113,6 @@ fn driver(
     let map = args.map.as_deref().map(surveyed).transpose()?;
     let (remote, policy) = Remote::open(listen, machine, config, map)
         .map_err(|source| Problem::Listen { address: listen.address, source })?;
-    eprintln!("gateway: a controller may connect to ws://{}", remote.address());
     Ok((Box::new(policy), Some(remote)))
 }
 
@@ -134,7 +145,7 @@ struct Run {
     halt: Arc<AtomicBool>,
     start: Instant,
     freshness: Freshness,
-    complaints: Complaints,
+    talk: Talk,
     /// The order to disarm was given.
     ending: bool,
     never_armed: Option<Reason>,
@@ -156,6 +167,7 @@ impl Run {
             lateness,
             frames_lost,
             frames_discarded,
+            controller: self.remote.as_ref().map(Remote::account),
             broke: broke.or(self.broke).or(closed),
             interrupted,
             never_armed: self.never_armed,
@@ -235,19 +247,12 @@ impl Run {
             self.gateway.order(Order::EmergencyStop);
         }
         out.clear();
-        // Receiver bytes and frames came in up to here.
+        self.hear_controller();
+        // Receiver bytes, frames and answers came in up to here.
         let now = sim_time(now.max(self.start.elapsed()));
         let ran = matches!(self.gateway.status().phase, Phase::Armed);
-        if let Some(remote) = &mut self.remote {
-            let wanted = remote.hear(now);
-            wanted.order.into_iter().for_each(|order| self.gateway.order(order));
-            self.complaints.tell(now, &wanted.refused);
-        }
         self.gateway.tick(now, out);
         let status = self.gateway.status();
-        if let Some(remote) = &mut self.remote {
-            remote.tell(now, &status);
-        }
         if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
             (asked, status.phase, status.blocked)
         {
@@ -257,7 +262,23 @@ impl Run {
             // What a full queue still holds would move the machine once the bus takes it again.
             self.wire.discard_waiting();
         }
-        out.frames().iter().try_for_each(|frame| self.wire.send(now, frame))
+        out.frames().iter().try_for_each(|frame| self.wire.send(now, frame))?;
+        // After the frames, which nobody's observation delays.
+        if let Some(remote) = &mut self.remote {
+            remote.tell(now, &status);
+        }
+        Ok(())
+    }
+
+    /// Takes what a controller elsewhere has said.
+    fn hear_controller(&mut self) {
+        let Some(remote) = &mut self.remote else { return };
+        let now = sim_time(self.start.elapsed());
+        let wanted = remote.hear(now);
+        wanted.order.into_iter().for_each(|order| self.gateway.order(order));
+        for why in wanted.refused {
+            self.talk.say(format!("{:8.2} s  rosbridge: {why}", now.as_secs_f64()));
+        }
     }
 
     /// Gives the order to disarm once, when there is a reason to stop.

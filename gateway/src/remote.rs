@@ -8,9 +8,11 @@
 //! | `/xt28/finish` | `std_srvs/SetBool` | the task is over: reached, or given up |
 //! | `/xt28/emergency_stop` | `std_srvs/Trigger` | from any client; only a new run releases it |
 //!
-//! One controller drives. Whoever else publishes actions is refused until that one has been silent for as long as
-//! the safety kernel waits for it. Nothing a client can say arms the machine, or shifts a limit.
+//! One client drives: the first whose answer is taken. Another one may once that has been silent for twice as long as
+//! the safety kernel waits for it, which has stopped the machine by then. Whoever drives lets the gateway arm, as every
+//! policy does; nothing that any client can say releases a stop or shifts a limit.
 
+mod complaints;
 mod listen;
 mod messages;
 
@@ -20,14 +22,16 @@ use std::net::SocketAddr;
 
 use serde_json::{Value, json};
 use xt28_machine::{Machine, SimTime};
-use xt28_rosbridge::{Call, Catalogue, ClientId, Event, Server, Service, Topic};
+use xt28_rosbridge::{Call, Catalogue, ClientId, Event, Server, Service, Taken, Topic, printable};
 use xt28_safety::Order;
 use xt28_terrain::{LocalMap, MapPose, Terrain};
 
-use crate::policy::{External, Seat, Seen};
+use crate::policy::{Account, External, Seat, Seen};
 use crate::{GatewayConfig, Outcome, Status};
 
 pub use listen::Listen;
+
+use complaints::Complaints;
 
 const OBSERVATION: &str = "/xt28/observation";
 const STATUS: &str = "/xt28/status";
@@ -40,13 +44,18 @@ const CATALOGUE: Catalogue = Catalogue {
         Topic { name: OBSERVATION, kind: "xt28_msgs/Observation" },
         Topic { name: STATUS, kind: "xt28_msgs/Status" },
     ],
-    taken: &[Topic { name: ACTION, kind: "xt28_msgs/Action" }],
+    taken: &[Taken {
+        topic: Topic { name: ACTION, kind: "xt28_msgs/Action" },
+        distil: messages::distil_action,
+    }],
     services: &[
-        Service { name: FINISH, kind: "std_srvs/SetBool" },
-        Service { name: EMERGENCY_STOP, kind: "std_srvs/Trigger" },
+        Service { name: FINISH, kind: "std_srvs/SetBool", distil: messages::distil_finish },
+        Service { name: EMERGENCY_STOP, kind: "std_srvs/Trigger", distil: |_| Ok(Value::Null) },
     ],
 };
 
+/// Most events that are taken at one tick: none of them may wait for the others' sake.
+const EVENTS_PER_TICK: usize = 32;
 /// How often the status is published.
 const STATUS_PERIOD: Duration = Duration::from_millis(100);
 
@@ -61,10 +70,11 @@ pub struct Remote {
     /// Who drives, and when it answered last.
     driver: Option<(ClientId, SimTime)>,
     /// Its silence after which another one may drive.
-    patience: Duration,
+    handover: Duration,
     /// Somebody has driven, and is gone.
     left: bool,
     told_at: Option<SimTime>,
+    complaints: Complaints,
 }
 
 /// What clients wanted beyond driving.
@@ -72,8 +82,19 @@ pub struct Remote {
 pub struct Wanted {
     /// To be passed on to the gateway.
     pub order: Option<Order>,
-    /// What was refused, in words for whoever runs the gateway.
+    /// What was refused, in words for whoever runs the gateway: one line each, and no flood of them.
     pub refused: Vec<String>,
+}
+
+/// What came of waiting for a controller.
+#[derive(Debug)]
+pub enum Waited {
+    /// It has answered, or it has left, or there is nothing to answer.
+    OwesNothing,
+    /// Something was said, which need not be the answer.
+    For(Wanted),
+    /// Nobody said anything for so long.
+    InVain,
 }
 
 impl Remote {
@@ -89,16 +110,17 @@ impl Remote {
     ) -> io::Result<(Self, External)> {
         let server = Server::open(listen.address, CATALOGUE)?;
         let (policy, seat) = External::new(machine, listen.pace);
-        let patience = Duration::from_nanos(config.limits.policy.span_ns());
+        let handover = Duration::from_nanos(config.limits.policy.span_ns().saturating_mul(2));
         let remote = Self {
             server,
             seat,
             map,
             heights_m: Vec::new(),
             driver: None,
-            patience,
+            handover,
             left: false,
             told_at: None,
+            complaints: Complaints::default(),
         };
         Ok((remote, policy))
     }
@@ -109,10 +131,29 @@ impl Remote {
         self.server.address()
     }
 
-    /// Takes all that has come in. To be called before each tick of the gateway.
+    /// Whether anybody has driven yet.
+    #[must_use]
+    pub const fn has_driver(&self) -> bool {
+        self.driver.is_some()
+    }
+
+    /// The newest observation's number, and that of the one answered last; 0 is none.
+    #[must_use]
+    pub fn owed(&self) -> (u64, u64) {
+        self.seat.owed()
+    }
+
+    /// How the controller has kept up so far.
+    #[must_use]
+    pub fn account(&self) -> Account {
+        self.seat.account()
+    }
+
+    /// Takes what has come in. To be called before each tick of the gateway.
     pub fn hear(&mut self, now: SimTime) -> Wanted {
         let mut wanted = Wanted::default();
-        while let Some(event) = self.server.event(Duration::ZERO) {
+        for _ in 0..EVENTS_PER_TICK {
+            let Some(event) = self.server.event(Duration::ZERO) else { break };
             self.take(now, event, &mut wanted);
         }
         wanted
@@ -132,32 +173,40 @@ impl Remote {
         }
     }
 
-    /// Waits until the controller has answered what it was shown last: for runs in simulated time, where the machine
-    /// can wait. One that has left is not waited for. False when it took longer than `patience`.
-    pub fn wait(&mut self, now: SimTime, patience: Duration, wanted: &mut Wanted) -> bool {
-        while !self.left && !self.seat.is_answered() {
-            let Some(event) = self.server.event(patience) else { return false };
-            self.take(now, event, wanted);
+    /// Waits for what a controller says next, if it owes an answer to what it was shown last: for runs in simulated
+    /// time, where the machine can wait. One that has left is not waited for. To be called until it owes nothing.
+    pub fn wait(&mut self, now: SimTime, patience: Duration) -> Waited {
+        if self.left || self.seat.is_answered() {
+            return Waited::OwesNothing;
         }
-        true
+        let mut wanted = Wanted::default();
+        match self.server.event(patience) {
+            Some(event) => self.take(now, event, &mut wanted),
+            None => return Waited::InVain,
+        }
+        Waited::For(wanted)
     }
 
     fn take(&mut self, now: SimTime, event: Event, wanted: &mut Wanted) {
-        match event {
+        let refused = match event {
             Event::Published { client, message, .. } => {
-                if let Err(why) = self.drive(now, client, &message) {
-                    wanted.refused.push(why.clone());
-                    self.server.complain(client, why);
-                }
+                let driven = self.drive(now, client, &message);
+                driven.err().inspect(|why| self.server.complain(client, why.clone()))
             }
-            Event::Called(call) => self.serve(call, wanted),
-            Event::Left(client) if self.driver.is_some_and(|(driver, _)| driver == client) => {
-                self.driver = None;
+            Event::Called(call) => {
+                self.serve(call, wanted);
+                None
+            }
+            Event::Left(client) => self.driver.filter(|(driver, _)| *driver == client).map(|_| {
                 self.left = true;
-                wanted.refused.push("the controller has left".to_owned());
-            }
-            Event::Left(_) => {}
-            Event::Complained { why, .. } => wanted.refused.push(why),
+                "the controller has left".to_owned()
+            }),
+            Event::Complained { why, .. } => Some(why),
+        };
+        if let Some(why) = refused.map(|why| printable(&why))
+            && self.complaints.is_news(now, &why)
+        {
+            wanted.refused.push(why);
         }
     }
 
@@ -166,34 +215,37 @@ impl Remote {
         let (seq, action) = messages::action(message)?;
         if let Some((driver, at)) = self.driver
             && driver != client
-            && now.since(at) <= self.patience
+            && now.since(at) <= self.handover
         {
             return Err("another controller drives".to_owned());
         }
-        self.seat.answer(seq, action).map_err(|refusal| refusal.to_string())?;
+        self.seat.answer(now, seq, action).map_err(|refusal| refusal.to_string())?;
         self.driver = Some((client, now));
         self.left = false;
         Ok(())
     }
 
     fn serve(&self, call: Call, wanted: &mut Wanted) {
-        let done = || json!({ "success": true, "message": "" });
-        let answer = match (call.service, call.args.get("data").and_then(Value::as_bool)) {
-            (FINISH, Some(reached)) if self.driver.is_none_or(|(d, _)| d == call.client) => {
-                let given_up = || Outcome::Failed("the controller gave up".to_owned());
-                self.seat.conclude(if reached { Outcome::Reached } else { given_up() });
-                Ok(done())
-            }
-            (FINISH, Some(_)) => Err("another controller drives".to_owned()),
-            (FINISH, None) => {
-                Err("give data: true where the task is done, false where it is given up".to_owned())
-            }
+        let done = match call.service {
+            FINISH => self.finish(&call),
             _ => {
                 wanted.order = Some(Order::EmergencyStop);
-                Ok(done())
+                Ok(())
             }
         };
+        let answer = done.map(|()| json!({ "success": true, "message": "" }));
         self.server.respond(call, answer);
+    }
+
+    /// Ends the task, if it is the driver that says so.
+    fn finish(&self, call: &Call) -> Result<(), String> {
+        if self.driver.is_none_or(|(driver, _)| driver != call.client) {
+            return Err("only the controller that drives can end its task".to_owned());
+        }
+        let given_up = || Outcome::Failed("the controller gave up".to_owned());
+        let reached = call.args == Value::Bool(true);
+        self.seat.conclude(if reached { Outcome::Reached } else { given_up() });
+        Ok(())
     }
 
     /// Cuts the local height map where the machine is known to be; false where there is none.

@@ -1,5 +1,6 @@
 //! The result of a run: for people on stderr, for scripts on stdout.
 
+use gateway::policy::Account;
 use gateway::{EcuReport, Outcome, Status};
 use serde_json::{Value, json};
 
@@ -53,7 +54,30 @@ pub(crate) fn tell(finished: &Finished) {
             "{frames} frames of ours never left: the bus took none, or they were too old by then"
         );
     }
+    if let Some(account) = &finished.controller {
+        tell_controller(account);
+    }
     tell_fixes(status);
+}
+
+/// How the controller kept up.
+fn tell_controller(account: &Account) {
+    let Account { shown, answers, delay_max, .. } = account;
+    match mean_ms(account) {
+        None => eprintln!("the controller was shown {shown} observations and answered none"),
+        Some(mean_ms) => eprintln!(
+            "the controller answered {answers} times to {shown} observations, after {mean_ms:.0} ms on average \
+             and {} ms at worst",
+            delay_max.as_millis()
+        ),
+    }
+}
+
+/// How long an answer took on average, ms; none where there was none.
+fn mean_ms(account: &Account) -> Option<f64> {
+    let answers = u32::try_from(account.answers).unwrap_or(u32::MAX);
+    let mean = account.delay_sum.checked_div(answers)?;
+    Some(mean.as_secs_f64() * 1e3)
 }
 
 /// What stood against the receiver's fixes, as far as something did.
@@ -102,6 +126,10 @@ pub(crate) fn json(finished: &Finished) -> Value {
         "fixes": { "used": counts.fixes, "refused": counts.fixes_refused,
                    "without_heading": counts.fixes_without_heading,
                    "overtaken": counts.fixes_overtaken, "incomplete": counts.fixes_incomplete },
+        "controller": finished.controller.as_ref().map(|account| json!({
+            "shown": account.shown, "answers": account.answers,
+            "delay_ms": { "mean": mean_ms(account), "worst": account.delay_max.as_secs_f64() * 1e3 },
+        })),
         "faults": { "gnss_stream": counts.gnss_faults, "frames_refused": counts.frames_refused,
                     "frames_unsent": counts.frames_unsent,
                     "frames_discarded": finished.frames_discarded,

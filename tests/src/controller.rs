@@ -1,36 +1,63 @@
-//! A controller elsewhere at the wheel of a run in simulated time: the machine waits for its answers.
+//! A controller elsewhere at the wheel of a run in simulated time.
 //!
-//! What it is shown at one tick it answers before the next, however long it thinks, so that the same controller
-//! drives the same run again.
+//! The machine waits for it: what it is shown at one tick it answers before the next, however long it thinks, so that
+//! the same controller drives the same run again. Or it does not, once it has begun: then the run is paced by wall time,
+//! and a controller that is too slow is found out as on the machine.
 
-use std::io;
 use std::net::SocketAddr;
 use std::time::Duration;
 
 use gateway::policy::External;
-use gateway::{Gateway, GatewayConfig, Listen, Remote, Wanted};
+use gateway::{Gateway, GatewayConfig, Order, Phase, Reason, Remote, Waited, Wanted};
 use xt28_machine::SimTime;
 
 use crate::{RunError, Setup};
 
+/// How long a controller is waited for before that is said.
+const REMIND_AFTER: Duration = Duration::from_secs(2);
+
+/// How much patience a run has with its controller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Terms {
+    /// How long it may take to connect, and for each answer that is waited for.
+    pub patience: Duration,
+    /// Whether each answer is waited for, or the first alone.
+    pub waits: bool,
+}
+
+/// Hears what is to be said of a controller on the way: at which time of the run, and what.
+pub type Hearer = Box<dyn FnMut(SimTime, &str) + Send>;
+
 /// The talk with a controller that connects over rosbridge.
-#[derive(Debug)]
 pub struct Controller {
     remote: Remote,
-    patience: Duration,
-    wanted: Wanted,
+    /// What the gateway is to drive by, until it does.
+    policy: Option<External>,
+    terms: Terms,
+    hearer: Hearer,
+    held_up: Duration,
 }
 
 impl Controller {
-    /// Listens for one, which may take `patience` for each answer, the first among them; the policy is what the
-    /// gateway is to drive by. It sees the map that the scenario gives a policy.
+    /// Listens for one, where the scenario is driven by one. It sees the map that the scenario gives a policy.
     ///
     /// # Errors
-    /// The address cannot be listened on.
-    pub fn open(setup: &Setup, listen: Listen, patience: Duration) -> io::Result<(Self, External)> {
+    /// [`RunError::Policy`], and [`RunError::Listen`] where the address cannot be listened on.
+    pub fn open(setup: &Setup, terms: Terms, hearer: Hearer) -> Result<Option<Self>, RunError> {
+        let policy_at = || setup.scenario.policy_at.clone();
+        let listen =
+            setup.listen().map_err(|source| RunError::Policy { policy_at: policy_at(), source })?;
+        let Some(listen) = listen else { return Ok(None) };
         let (machine, map) = (&setup.machine, Some(setup.map.clone()));
-        let (remote, policy) = Remote::open(listen, machine, &GatewayConfig::new(machine), map)?;
-        Ok((Self { remote, patience, wanted: Wanted::default() }, policy))
+        let config = GatewayConfig::new(machine);
+        let (remote, policy) = Remote::open(listen, machine, &config, map)
+            .map_err(|source| RunError::Listen { address: listen.address, source })?;
+        Ok(Some(Self { remote, policy: Some(policy), terms, hearer, held_up: Duration::ZERO }))
+    }
+
+    /// The gateway's end.
+    pub(crate) fn take_policy(&mut self) -> Option<External> {
+        self.policy.take()
     }
 
     /// Where it is listened for.
@@ -39,28 +66,84 @@ impl Controller {
         self.remote.address()
     }
 
-    /// What was refused since the last call.
-    pub fn refused(&mut self) -> Vec<String> {
-        std::mem::take(&mut self.wanted.refused)
+    /// How long the run was held up since the last call, for a pace by wall time to begin anew from there.
+    pub(crate) const fn take_held_up(&mut self) -> Duration {
+        std::mem::replace(&mut self.held_up, Duration::ZERO)
     }
 
     /// Shows it what the gateway saw at this tick, waits for its answer, and passes on what else it wants.
     ///
     /// # Errors
     /// [`RunError::Controller`] where it does not answer.
-    pub(crate) fn follow(&mut self, now: SimTime, gateway: &mut Gateway) -> Result<(), RunError> {
-        self.remote.tell(now, &gateway.status());
-        let answered = self.remote.wait(now, self.patience, &mut self.wanted);
-        let mut late = self.remote.hear(now);
-        self.wanted.refused.append(&mut late.refused);
-        if let Some(order) = self.wanted.order.take().or(late.order) {
-            gateway.order(order);
+    pub(crate) fn follow(
+        &mut self,
+        now: SimTime,
+        gateway: &mut Gateway,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> Result<(), RunError> {
+        let status = gateway.status();
+        self.remote.tell(now, &status);
+        let wanted = self.remote.hear(now);
+        let halted = self.pass_on(now, wanted, gateway)
+            || matches!(status.phase, Phase::Blocked(Reason::EmergencyStop));
+        if !halted && (self.terms.waits || !self.remote.has_driver()) {
+            self.wait(now, gateway, clock)?;
         }
-        if answered {
-            return Ok(());
+        Ok(())
+    }
+
+    fn wait(
+        &mut self,
+        now: SimTime,
+        gateway: &mut Gateway,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> Result<(), RunError> {
+        let (begun, mut in_vain, mut reminded) = (clock(), Duration::ZERO, false);
+        loop {
+            let waited = clock().saturating_sub(begun).max(in_vain);
+            let next =
+                if reminded { self.terms.patience } else { REMIND_AFTER.min(self.terms.patience) };
+            let patience = next.saturating_sub(waited);
+            match self.remote.wait(now, patience) {
+                Waited::OwesNothing => {
+                    self.held_up += waited;
+                    return Ok(());
+                }
+                Waited::For(wanted) => {
+                    if self.pass_on(now, wanted, gateway) {
+                        return Ok(());
+                    }
+                }
+                Waited::InVain => in_vain = waited.max(next),
+            }
+            if in_vain >= self.terms.patience {
+                let (address, patience) = (self.address(), self.terms.patience);
+                return Err(RunError::Controller { address, patience, owed: self.owed() });
+            }
+            if in_vain >= REMIND_AFTER && !reminded {
+                reminded = true;
+                let still = format!("still waiting: {}", self.owed());
+                (self.hearer)(now, &still);
+            }
         }
-        let refused =
-            self.wanted.refused.last().map_or_else(String::new, |why| format!(" ({why})"));
-        Err(RunError::Controller { address: self.address(), patience: self.patience, refused })
+    }
+
+    /// What the run waits for, in words.
+    fn owed(&self) -> String {
+        match self.remote.owed() {
+            (seq, 0) => format!("nobody has answered an observation yet ({seq} is asked)"),
+            (seq, answered) => {
+                format!("observation {seq} is not answered, {answered} was the last")
+            }
+        }
+    }
+
+    /// Tells what was refused, and gives the gateway the order that was wanted; true if that was to stop.
+    fn pass_on(&mut self, now: SimTime, wanted: Wanted, gateway: &mut Gateway) -> bool {
+        for why in &wanted.refused {
+            (self.hearer)(now, why);
+        }
+        let order = wanted.order.inspect(|order| gateway.order(*order));
+        matches!(order, Some(Order::EmergencyStop))
     }
 }

@@ -7,6 +7,7 @@
 
 mod builtin;
 mod cab_script;
+mod conditions;
 mod controller;
 mod decode;
 mod digest;
@@ -31,7 +32,8 @@ mod truth;
 
 pub use builtin::BUILTIN;
 pub use cab_script::CabScript;
-pub use controller::Controller;
+pub use conditions::Conditions;
+pub use controller::{Controller, Hearer, Terms};
 pub use decode::Decoder;
 pub use digest::sha256;
 pub use driven::{Driven, SafetyStop};

@@ -15,7 +15,7 @@ use std::net::SocketAddr;
 use std::time::Duration;
 
 use ecu_emu::{Emulator, EmulatorConfig, Operator, TICK};
-use gateway::policy::{External, Policy, SpecError};
+use gateway::policy::{Policy, SpecError};
 use gateway::{Gateway, GatewayConfig, Order};
 use xt28_bus::{Bitrate, NodeId, VirtualBus, candump};
 use xt28_dbc::Outbox;
@@ -61,17 +61,26 @@ pub enum RunError {
     /// An effect is none that the machine can have.
     #[error(transparent)]
     Effects(#[from] OverlayError),
+    /// A controller elsewhere cannot be listened for.
+    #[error("{address}: cannot listen for a controller: {source}; is the port taken?")]
+    Listen {
+        /// Where.
+        address: SocketAddr,
+        /// Why not.
+        source: io::Error,
+    },
     /// A controller elsewhere did not answer.
     #[error(
-        "no answer from a controller at ws://{address} within {patience:?}{refused}; is it running?"
+        "no answer from a controller at ws://{address} within {patience:?}: {owed}; does one run, subscribe, and \
+         answer each observation once?"
     )]
     Controller {
         /// Where it was listened for.
         address: SocketAddr,
         /// How long it was waited for.
         patience: Duration,
-        /// What was refused last, in brackets.
-        refused: String,
+        /// What it owes, in words.
+        owed: String,
     },
     /// The log could not be written.
     #[error("cannot write the log: {0}; is the disk full?")]
@@ -99,10 +108,14 @@ impl<W: Write> Lockstep<W> {
     /// [`RunError::Effects`].
     pub fn with_controller(
         setup: &Setup,
-        (controller, policy): (Controller, External),
+        mut controller: Controller,
         log: W,
     ) -> Result<Self, RunError> {
-        Self::driven_by(setup, Box::new(policy), Some(controller), log)
+        match controller.take_policy() {
+            Some(policy) => Self::driven_by(setup, Box::new(policy), Some(controller), log),
+            // One that drove another run has no more to give.
+            None => Self::new(setup, log),
+        }
     }
 
     fn driven_by(
@@ -150,9 +163,9 @@ impl<W: Write> Lockstep<W> {
         self.now
     }
 
-    /// What a controller elsewhere was refused since the last call.
-    pub fn refused(&mut self) -> Vec<String> {
-        self.controller.as_mut().map(Controller::refused).unwrap_or_default()
+    /// How long a controller elsewhere held up the run since the last call.
+    pub fn take_held_up(&mut self) -> Duration {
+        self.controller.as_mut().map_or(Duration::ZERO, Controller::take_held_up)
     }
 
     /// Share of the run that is done, 0 to 1.
@@ -179,7 +192,7 @@ impl<W: Write> Lockstep<W> {
         let start = clock();
         self.tick_emulator(now);
         let emulator = clock().saturating_sub(start);
-        self.tick_gateway(now)?;
+        self.tick_gateway(now, clock)?;
         self.now += TICK;
         Ok(Some(TickCost { emulator }))
     }
@@ -250,7 +263,11 @@ impl<W: Write> Lockstep<W> {
         self.truth.push((now + TICK).as_secs_f64(), &emulator.truth());
     }
 
-    fn tick_gateway(&mut self, now: SimTime) -> Result<(), RunError> {
+    fn tick_gateway(
+        &mut self,
+        now: SimTime,
+        clock: &mut dyn FnMut() -> Duration,
+    ) -> Result<(), RunError> {
         let Some((node, gateway)) = &mut self.gateway else {
             return Ok(());
         };
@@ -266,7 +283,7 @@ impl<W: Write> Lockstep<W> {
             self.bus.send(*node, now, frame);
         }
         match &mut self.controller {
-            Some(controller) => controller.follow(now, gateway),
+            Some(controller) => controller.follow(now, gateway, clock),
             None => Ok(()),
         }
     }

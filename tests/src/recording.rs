@@ -6,7 +6,7 @@ use xt28_bus::candump::{ReadError, Reader};
 use xt28_machine::SimTime;
 
 use crate::decode::Decoder;
-use crate::{Driven, Report, Setup, Trace, Truth};
+use crate::{Conditions, Driven, Report, Setup, Trace, Truth};
 
 /// One recorded run, on either kind of bus.
 #[derive(Clone, Debug)]
@@ -47,6 +47,7 @@ impl Recording {
             scenario: setup.scenario.name.clone(),
             seed: setup.seed,
             bus: bus.to_owned(),
+            conditions: Conditions::new(setup),
             findings: setup.judge(&self.trace, self.truth.as_ref()),
             driven: self.driven.clone(),
             simulated_s: setup.scenario.duration_s,

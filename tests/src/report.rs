@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::finding::significant;
-use crate::{Bound, Driven, Finding};
+use crate::{Bound, Conditions, Driven, Finding};
 
 /// Result of one run.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub struct Report {
     pub seed: u64,
     /// `virtual`, or the CAN interface.
     pub bus: String,
+    /// Under what it was driven.
+    pub conditions: Conditions,
     /// What was found, in the scenario's order.
     pub findings: Vec<Finding>,
     /// What the gateway said of itself at its end, where it could.
@@ -101,6 +103,7 @@ impl Report {
                 text += &format!(", ticks up to {lateness_ms:.1} ms late");
             }
         }
+        text += &format!("\n{}", self.conditions.line());
         if let Some(driven) = &self.driven {
             text += &format!("\ngateway: {driven}");
         }
@@ -114,6 +117,7 @@ impl Report {
             "scenario": self.scenario,
             "seed": self.seed,
             "bus": self.bus,
+            "conditions": self.conditions.json(),
             "passed": self.passed(),
             "expectations": self.findings.iter().map(finding_json).collect::<Vec<_>>(),
             "gateway": self.driven,
@@ -160,6 +164,11 @@ mod tests {
         Report {
             scenario: "s".to_owned(),
             seed: 7,
+            conditions: Conditions {
+                policy: "hold".to_owned(),
+                solver: "rapier".to_owned(),
+                effects: Vec::new(),
+            },
             bus: "virtual".to_owned(),
             findings,
             driven: Some(Driven {

@@ -4,14 +4,14 @@
 use std::io::{self, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::process::{Command, Stdio};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use gateway::Listen;
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
-use xt28_scenarios::{Controller, Driven, Lockstep, Recording, RunError, Scenario, Setup};
+use xt28_scenarios::{Controller, Driven, Lockstep, Recording, RunError, Scenario, Setup, Terms};
 
 /// So long without an answer is no busy machine any more.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -24,10 +24,10 @@ fn setup(name: &str, pace: &str) -> Setup {
     setup
 }
 
-/// A run, and all that was refused on the way.
+/// A run, and all that was said on the way.
 struct Drive {
     recording: Recording,
-    refused: Vec<String>,
+    told: Vec<String>,
 }
 
 impl Drive {
@@ -38,15 +38,20 @@ impl Drive {
 
 /// Runs under a controller that is started once the address is known.
 fn drive<T>(setup: &Setup, start: impl FnOnce(SocketAddr) -> T) -> Result<(Drive, T), RunError> {
-    let listen = Listen::parse(&setup.scenario.policy).unwrap().unwrap();
-    let controller = Controller::open(setup, listen, PATIENCE).unwrap();
-    let started = start(controller.0.address());
+    let told = Arc::new(Mutex::new(Vec::new()));
+    let controller = listening(setup, PATIENCE, &told);
+    let started = start(controller.address());
     let mut run = Lockstep::with_controller(setup, controller, io::sink())?;
-    let mut refused = Vec::new();
-    while run.tick(&mut || Duration::ZERO)?.is_some() {
-        refused.append(&mut run.refused());
-    }
-    Ok((Drive { recording: run.finish()?, refused }, started))
+    while run.tick(&mut || Duration::ZERO)?.is_some() {}
+    let recording = run.finish()?;
+    let told = std::mem::take(&mut *told.lock().unwrap());
+    Ok((Drive { recording, told }, started))
+}
+
+fn listening(setup: &Setup, patience: Duration, told: &Arc<Mutex<Vec<String>>>) -> Controller {
+    let told = Arc::clone(told);
+    let hearer = Box::new(move |_, what: &str| told.lock().unwrap().push(what.to_owned()));
+    Controller::open(setup, Terms { patience, waits: true }, hearer).unwrap().unwrap()
 }
 
 struct Client(WebSocket<MaybeTlsStream<TcpStream>>);
@@ -132,7 +137,7 @@ fn roslibpy_drives_to_the_goal() {
         assert!(python.wait().unwrap().success());
         let report = drive.recording.report(&setup, "virtual");
         assert!(report.passed(), "{}", report.table());
-        assert_eq!((drive.driven().outcome.as_str(), drive.refused.len()), ("reached", 0));
+        assert_eq!((drive.driven().outcome.as_str(), drive.told.len()), ("reached", 0));
         drive.recording.log_sha256
     };
     assert_eq!(once(), once());
@@ -152,7 +157,7 @@ fn a_controller_that_falls_silent_stops_the_machine() {
     let stop = drive.driven().safety_stop.as_ref().expect("a safety stop");
     assert_eq!(stop.reason, "policy silent");
     assert!((8.0..8.7).contains(&stop.at_s), "{}", stop.at_s);
-    assert!(drive.refused.iter().any(|why| why.contains("has left")), "{:?}", drive.refused);
+    assert!(drive.told.iter().any(|why| why.contains("has left")), "{:?}", drive.told);
 }
 
 #[test]
@@ -169,12 +174,17 @@ fn what_is_no_action_is_refused_with_the_remedy_and_moves_nothing() {
                     json!({ "seq": 1000, "action": ONWARD }),
                     json!({ "seq": 0, "action": ONWARD }),
                     json!([0.0]),
+                    json!({ "seq": seen["seq"], "action": ONWARD, "\u{1b}[31mred\n": 1 }),
                 ] {
                     client.say(&json!({ "op": "publish", "topic": "/xt28/action", "msg": msg }));
                     assert_eq!(client.hear().unwrap()["op"], "status", "{msg}");
                 }
-                client.say(&json!({ "op": "call_service", "id": 1, "service": "/xt28/finish" }));
-                assert_eq!(client.hear().unwrap()["result"], false);
+                // Nor does who has not driven end a task.
+                for args in [json!({}), json!({ "data": true }), json!([false])] {
+                    client.say(&json!({ "op": "call_service", "id": 1, "service": "/xt28/finish",
+                                        "args": args }));
+                    assert_eq!(client.hear().unwrap()["result"], false, "{args}");
+                }
             }
             client.act(seen, [0.0; 8]);
             seen["time_s"].as_f64().unwrap() < 3.0
@@ -182,8 +192,10 @@ fn what_is_no_action_is_refused_with_the_remedy_and_moves_nothing() {
     })
     .unwrap();
     thread.join().unwrap();
+    assert_eq!(drive.driven().outcome, "endless");
+    assert!(!drive.told.iter().any(|why| why.contains(char::is_control)), "{:?}", drive.told);
     for says in ["missing field `seq`", "invalid length 2", "unknown field `speed`", "1000 yet"] {
-        assert!(drive.refused.iter().any(|why| why.contains(says)), "{says}: {:?}", drive.refused);
+        assert!(drive.told.iter().any(|why| why.contains(says)), "{says}: {:?}", drive.told);
     }
 }
 
@@ -217,6 +229,52 @@ fn one_drives_and_everybody_may_stop() {
 }
 
 #[test]
+fn who_waits_to_drive_does_not_take_over_a_machine_that_moves() {
+    let setup = setup("straight-25m", "");
+    let (drive, thread) = drive(&setup, |address| {
+        thread::spawn(move || {
+            let mut driver = Client::connect(address);
+            let mut other = loop {
+                let seen = driver.see().unwrap();
+                if seen["time_s"].as_f64().unwrap() > 4.0 {
+                    // Both have seen it; one leaves without an answer.
+                    break Client::connect(address);
+                }
+                driver.act(&seen, ONWARD);
+            };
+            drop(driver);
+            while let Some(seen) = other.see() {
+                other.act(&seen, [-1.0; 8]);
+            }
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    let stop = drive.driven().safety_stop.as_ref().expect("a safety stop");
+    assert_eq!(stop.reason, "policy silent");
+    assert!((4.0..4.7).contains(&stop.at_s), "{}", stop.at_s);
+}
+
+#[test]
+fn an_observation_is_answered_once_so_that_a_hasty_controller_drives_the_same_twice() {
+    let setup = setup("turn-left", "");
+    let once = || {
+        let (drive, thread) = drive(&setup, |address| {
+            controller(address, |client, seen| {
+                client.act(seen, ONWARD);
+                client.act(seen, [0.0; 8]);
+                true
+            })
+        })
+        .unwrap();
+        thread.join().unwrap();
+        assert!(drive.told.iter().any(|why| why.contains("answered already")), "{:?}", drive.told);
+        drive.recording.log_sha256
+    };
+    assert_eq!(once(), once());
+}
+
+#[test]
 fn at_each_tick_a_controller_sees_the_machine_without_fixes_between() {
     let setup = setup("bumpy-field", ",tick");
     let (drive, thread) = drive(&setup, |address| {
@@ -239,8 +297,7 @@ fn at_each_tick_a_controller_sees_the_machine_without_fixes_between() {
 #[test]
 fn nobody_at_the_wheel_is_said_after_a_while() {
     let setup = setup("straight-25m", "");
-    let listen = Listen::parse(&setup.scenario.policy).unwrap().unwrap();
-    let controller = Controller::open(&setup, listen, Duration::from_millis(50)).unwrap();
+    let controller = listening(&setup, Duration::from_millis(50), &Arc::default());
     let mut run = Lockstep::with_controller(&setup, controller, io::sink()).unwrap();
     let error = loop {
         match run.tick(&mut || Duration::ZERO) {
@@ -249,6 +306,7 @@ fn nobody_at_the_wheel_is_said_after_a_while() {
         }
     };
     assert!(error.contains("ws://127.0.0.1:") && error.contains("within 50ms"), "{error}");
+    assert!(error.contains("nobody has answered an observation yet (1 is asked)"), "{error}");
     // Where nothing listens there is nothing to wait for.
     let error = Lockstep::new(&setup, io::sink()).err().unwrap().to_string();
     assert!(error.contains("--policy: ") && error.contains("xt28 run"), "{error}");

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 
-use crate::catalogue::{Catalogue, Service, Topic, is_kind, is_name};
+use crate::catalogue::{Catalogue, Service, Taken, Topic, is_kind, is_name};
 use crate::op::{self, Level, Message, Op};
 use crate::rosapi;
 use crate::session::{SUBSCRIPTIONS_MAX, Session};
@@ -23,7 +23,7 @@ pub enum Event {
         client: ClientId,
         /// On which topic, by its name in the catalogue.
         topic: &'static str,
-        /// What.
+        /// What its topic distils of it.
         message: Value,
     },
     /// A client called a service, and waits for [`Bridge::respond`].
@@ -46,7 +46,7 @@ pub struct Call {
     pub client: ClientId,
     /// Which service, by its name in the catalogue.
     pub service: &'static str,
-    /// With what.
+    /// What the service distils of the arguments.
     pub args: Value,
     id: Option<Value>,
     spelled: String,
@@ -153,15 +153,15 @@ impl Bridge {
         let Some(session) = self.sessions.get_mut(&client) else { return Ok(Heard::default()) };
         match op {
             Op::Advertise { topic, kind } => {
-                let taken = find(catalogue.taken, &topic, "to publish on")?;
-                ensure_kind(taken, &kind)?;
+                ensure_kind(&taken(&catalogue, &topic)?.topic, &kind)?;
             }
             Op::Unadvertise { topic } => {
-                find(catalogue.taken, &topic, "to publish on")?;
+                taken(&catalogue, &topic)?;
             }
             Op::Publish { topic, msg } => {
-                let topic = find(catalogue.taken, &topic, "to publish on")?.name;
-                let event = Event::Published { client, topic, message: msg };
+                let taken = taken(&catalogue, &topic)?;
+                let message = (taken.distil)(&msg)?;
+                let event = Event::Published { client, topic: taken.topic.name, message };
                 return Ok(Heard { reply: None, event: Some(event) });
             }
             Op::Subscribe { topic, kind, throttle_rate, fragment_size, compression } => {
@@ -173,7 +173,7 @@ impl Bridge {
                 if fragment_size.is_some() {
                     return Err(format!("{topic}: no fragments here; leave out fragment_size"));
                 }
-                let published = find(catalogue.published, &topic, "to subscribe to")?;
+                let published = published(&catalogue, &topic)?;
                 kind.map_or(Ok(()), |kind| ensure_kind(published, &kind))?;
                 let throttle = throttle(throttle_rate).ok_or_else(|| {
                     format!(
@@ -189,47 +189,68 @@ impl Bridge {
                 return Ok(Heard { reply: last, event: None });
             }
             Op::Unsubscribe { topic } => {
-                let published = find(catalogue.published, &topic, "to subscribe to")?;
+                let published = published(&catalogue, &topic)?;
                 session.unsubscribe(id.as_ref(), published.name);
             }
             Op::SetLevel { level } => session.level = level,
-            Op::CallService { service, args } => return Ok(self.call(client, id, service, args)),
+            Op::CallService { service, args } => {
+                return Ok(self.call(client, id, service, &args));
+            }
         }
         Ok(Heard::default())
     }
 
-    fn call(&self, client: ClientId, id: Option<Value>, spelled: String, args: Value) -> Heard {
+    fn call(&self, client: ClientId, id: Option<Value>, spelled: String, args: &Value) -> Heard {
         let named = |service: &&Service| is_name(&spelled, service.name);
         if let Some(service) = rosapi::SERVICES.iter().find(named) {
-            let values = rosapi::answer(service.name, &args, &self.catalogue, self.now);
+            let values = rosapi::answer(service.name, args, &self.catalogue, self.now);
             let reply = Some(response(&spelled, id.as_ref(), &values, true));
             return Heard { reply, event: None };
         }
-        if let Some(service) = self.catalogue.services.iter().find(named) {
-            let call = Call { client, service: service.name, args, id, spelled };
-            return Heard { reply: None, event: Some(Event::Called(call)) };
+        let found = self.catalogue.services.iter().find(named).ok_or_else(|| {
+            let names: Vec<_> =
+                self.catalogue.services.iter().map(|service| service.name).collect();
+            format!("no service {spelled:?}; there are {}", names.join(", "))
+        });
+        match found.and_then(|service| Ok((service.name, (service.distil)(args)?))) {
+            Ok((service, args)) => {
+                let call = Call { client, service, args, id, spelled };
+                Heard { reply: None, event: Some(Event::Called(call)) }
+            }
+            Err(why) => {
+                let why = printable(&why);
+                let values = Value::from(why.as_str());
+                let reply = Some(response(&spelled, id.as_ref(), &values, false));
+                Heard { reply, event: Some(Event::Complained { client, why }) }
+            }
         }
-        let names: Vec<_> = self.catalogue.services.iter().map(|service| service.name).collect();
-        let why = format!("no service {spelled:?}; there are {}", names.join(", "));
-        let why = printable(&why);
-        let reply = Some(response(&spelled, id.as_ref(), &Value::from(why.as_str()), false));
-        Heard { reply, event: Some(Event::Complained { client, why }) }
     }
 }
 
 /// Most of a complaint that is told, in characters: it may quote what a client sent.
 const TOLD_MAX: usize = 400;
 
-/// A complaint that a terminal can be given: in one line, without what would steer it.
-fn printable(why: &str) -> String {
+/// A complaint that a terminal can be given: in one line, not long, without what would steer it.
+#[must_use]
+pub fn printable(why: &str) -> String {
     why.chars().take(TOLD_MAX).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-fn find(topics: &'static [Topic], asked: &str, to: &str) -> Result<&'static Topic, String> {
-    topics.iter().find(|topic| is_name(asked, topic.name)).ok_or_else(|| {
-        let names: Vec<_> = topics.iter().map(|topic| topic.name).collect();
-        format!("no topic {asked:?} {to}; there are {}", names.join(", "))
-    })
+fn published(catalogue: &Catalogue, asked: &str) -> Result<&'static Topic, String> {
+    let topics = catalogue.published;
+    let missing = || no_topic(asked, "to subscribe to", topics.iter());
+    topics.iter().find(|topic| is_name(asked, topic.name)).ok_or_else(missing)
+}
+
+fn taken(catalogue: &Catalogue, asked: &str) -> Result<&'static Taken, String> {
+    let topics = catalogue.taken;
+    let missing = || no_topic(asked, "to publish on", topics.iter().map(|taken| &taken.topic));
+    topics.iter().find(|taken| is_name(asked, taken.topic.name)).ok_or_else(missing)
+}
+
+fn no_topic<'a>(asked: &str, to: &str, topics: impl Iterator<Item = &'a Topic>) -> String {
+    let names: Vec<_> = topics.map(|topic| topic.name).collect();
+    format!("no topic {asked:?} {to}; there are {}", names.join(", "))
 }
 
 fn ensure_kind(topic: &Topic, asked: &str) -> Result<(), String> {

@@ -1,5 +1,11 @@
 //! What there is: topics and services by their names in ROS, with their types.
 
+use serde_json::Value;
+
+/// What is left of a message for the owner, or why it is none. It runs on the server's thread: what a client sends is
+/// read and thrown away there, however much it is, and the owner gets what it can use.
+pub type Distil = fn(&Value) -> Result<Value, String>;
+
 /// A topic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Topic {
@@ -9,13 +15,24 @@ pub struct Topic {
     pub kind: &'static str,
 }
 
+/// A topic that the owner takes.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken {
+    /// Its name and type.
+    pub topic: Topic,
+    /// What is taken of a message.
+    pub distil: Distil,
+}
+
 /// A service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Service {
     /// Its name, from the root.
     pub name: &'static str,
     /// Its type, as `std_srvs/Trigger`.
     pub kind: &'static str,
+    /// What is taken of a call's arguments.
+    pub distil: Distil,
 }
 
 /// All that clients may use.
@@ -24,7 +41,7 @@ pub struct Catalogue {
     /// Topics that the owner publishes and clients subscribe to.
     pub published: &'static [Topic],
     /// Topics that clients publish and the owner takes.
-    pub taken: &'static [Topic],
+    pub taken: &'static [Taken],
     /// Services that clients call.
     pub services: &'static [Service],
 }
@@ -32,7 +49,7 @@ pub struct Catalogue {
 impl Catalogue {
     /// Every topic, published or taken.
     pub(crate) fn topics(&self) -> impl Iterator<Item = &'static Topic> {
-        self.published.iter().chain(self.taken)
+        self.published.iter().chain(self.taken.iter().map(|taken| &taken.topic))
     }
 }
 

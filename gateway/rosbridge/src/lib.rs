@@ -27,6 +27,6 @@ mod rosapi;
 mod server;
 mod session;
 
-pub use bridge::{Bridge, Call, ClientId, Event, Heard};
-pub use catalogue::{Catalogue, Service, Topic};
+pub use bridge::{Bridge, Call, ClientId, Event, Heard, printable};
+pub use catalogue::{Catalogue, Distil, Service, Taken, Topic};
 pub use server::Server;

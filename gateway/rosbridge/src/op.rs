@@ -81,13 +81,24 @@ pub(crate) struct Unread {
     pub(crate) why: String,
 }
 
+/// Longest identifier, bytes.
+const ID_MAX: usize = 256;
+
 /// Reads a text.
 pub(crate) fn read(text: &str) -> Result<Message, Unread> {
     let value: Value = serde_json::from_str(text).map_err(|error| Unread {
         id: None,
         why: format!("not JSON: {error} (NaN and infinity have no form in it)"),
     })?;
-    let id = value.get("id").filter(|id| !id.is_null()).cloned();
+    let id = match value.get("id") {
+        None | Some(Value::Null) => None,
+        Some(id @ Value::Number(_)) => Some(id.clone()),
+        Some(Value::String(id)) if id.len() <= ID_MAX => Some(Value::from(id.as_str())),
+        Some(_) => {
+            let why = format!("an id is a number or a string of at most {ID_MAX} bytes");
+            return Err(Unread { id: None, why });
+        }
+    };
     match Op::deserialize(value) {
         Ok(op) => Ok(Message { id, op }),
         Err(error) => Err(Unread { id, why: error.to_string() }),
@@ -119,6 +130,10 @@ mod tests {
         ] {
             let why = read(text).unwrap_err().why;
             assert!(why.contains(says), "{text}: {why}");
+        }
+        for id in ["[]", "{}", "true", &format!("{:?}", "x".repeat(257))] {
+            let text = format!(r#"{{"op": "unsubscribe", "topic": "/a", "id": {id}}}"#);
+            assert!(read(&text).unwrap_err().why.contains("256 bytes"), "{id}");
         }
         assert_eq!(read(r#"{"op": "shout", "id": 7}"#).unwrap_err().id, Some(Value::from(7)));
     }

@@ -8,12 +8,17 @@ use crate::catalogue::{Catalogue, Service, is_name};
 
 /// Those that are here, beside the owner's own.
 pub(crate) const SERVICES: &[Service] = &[
-    Service { name: "/rosapi/topics", kind: "rosapi/Topics" },
-    Service { name: "/rosapi/topic_type", kind: "rosapi/TopicType" },
-    Service { name: "/rosapi/services", kind: "rosapi/Services" },
-    Service { name: "/rosapi/service_type", kind: "rosapi/ServiceType" },
-    Service { name: "/rosapi/get_time", kind: "rosapi/GetTime" },
+    service("/rosapi/topics", "rosapi/Topics"),
+    service("/rosapi/topic_type", "rosapi/TopicType"),
+    service("/rosapi/services", "rosapi/Services"),
+    service("/rosapi/service_type", "rosapi/ServiceType"),
+    service("/rosapi/get_time", "rosapi/GetTime"),
 ];
+
+/// One that is answered at once, so that nothing of its arguments is handed on.
+const fn service(name: &'static str, kind: &'static str) -> Service {
+    Service { name, kind, distil: |_| Ok(Value::Null) }
+}
 
 /// The answer of one of [`SERVICES`]. An unknown name has the type "", as in rosapi.
 pub(crate) fn answer(service: &str, args: &Value, catalogue: &Catalogue, now: Duration) -> Value {

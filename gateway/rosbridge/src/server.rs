@@ -22,6 +22,9 @@ use crate::queue::Queue;
 /// Most clients at a time.
 const CLIENTS_MAX: usize = 16;
 
+/// How long nobody is let in once there was no file for a newcomer, s.
+const DEAF_S: i64 = 1;
+
 /// A rosbridge server on a socket of its own. Dropping it says goodbye to all clients.
 #[derive(Debug)]
 pub struct Server {
@@ -122,13 +125,21 @@ struct Desk {
     events: Arc<Queue>,
     bridge: Bridge,
     clients: BTreeMap<ClientId, Connection>,
-    /// The system has no file left for a newcomer; until somebody goes it is no use to look.
+    /// The system has no file left for a newcomer: it is no use to look again at once.
     deaf: bool,
 }
 
 impl Desk {
     fn run(&mut self) {
-        while let Ok((ready, knocked)) = self.sleep() {
+        loop {
+            let (ready, knocked) = match self.sleep() {
+                Ok(happened) => happened,
+                Err(error) => {
+                    self.tell(format!("the server ends: {error}"));
+                    break;
+                }
+            };
+            self.deaf = false;
             if !self.carry_out() {
                 break;
             }
@@ -157,9 +168,9 @@ impl Desk {
             let writes = if connection.waits { PollFlags::OUT } else { PollFlags::empty() };
             fds.push(PollFd::from_borrowed_fd(connection.as_fd(), reads | writes));
         }
-        let at_once = Timespec { tv_sec: 0, tv_nsec: 0 };
         let more = self.clients.values().any(|connection| connection.more);
-        match poll(&mut fds, more.then_some(&at_once)) {
+        let longest = Timespec { tv_sec: if more { 0 } else { DEAF_S }, tv_nsec: 0 };
+        match poll(&mut fds, (more || self.deaf).then_some(&longest)) {
             Ok(_) | Err(Errno::INTR) => {}
             Err(errno) => return Err(errno.into()),
         }
@@ -227,14 +238,23 @@ impl Desk {
 
     fn lose(&mut self, client: ClientId, Ended(why): Ended) {
         self.bridge.disconnect(client);
-        self.deaf = false;
+        let was_open = self.clients.get(&client).is_some_and(Connection::is_open);
         if let Some(connection) = self.clients.remove(&client) {
             connection.close();
         }
         if let Some(why) = why {
             self.events.push(Event::Complained { client, why });
         }
-        self.events.push(Event::Left(client));
+        if was_open {
+            self.events.push(Event::Left(client));
+        }
+    }
+
+    /// Tells the owner what is about no client that it knows.
+    fn tell(&mut self, why: String) {
+        let client = self.bridge.connect();
+        self.bridge.disconnect(client);
+        self.events.push(Event::Complained { client, why });
     }
 
     /// Takes in who knocked. Where the house is full somebody who never finished his handshake has to go, or
@@ -251,12 +271,18 @@ impl Desk {
                         ErrorKind::ConnectionAborted,
                     ];
                     self.deaf = !passes.contains(&error.kind());
+                    if self.deaf {
+                        self.tell(format!("cannot let anybody in: {error}"));
+                    }
                     return;
                 }
             };
             if self.clients.len() >= CLIENTS_MAX {
                 let idle = self.clients.iter().find(|(_, connection)| !connection.is_open());
-                let Some((&idle, _)) = idle else { continue };
+                let Some((&idle, _)) = idle else {
+                    self.tell(format!("turned a client away: {CLIENTS_MAX} are connected already"));
+                    continue;
+                };
                 self.lose(idle, Ended(Some("never finished its handshake".to_owned())));
             }
             if let Ok(connection) = Connection::begin(stream) {
@@ -270,9 +296,16 @@ impl Desk {
 /// What a text of a client comes to; the reply to it.
 fn hear(bridge: &mut Bridge, events: &Queue, client: ClientId, text: &str) -> Option<String> {
     let heard = bridge.hear(client, text);
+    let call = match &heard.event {
+        Some(Event::Called(call)) => Some(call.clone()),
+        _ => None,
+    };
     if heard.event.is_none_or(|event| events.push(event)) {
-        heard.reply
-    } else {
-        bridge.complain(client, None, "too much at a time".to_owned()).reply
+        return heard.reply;
+    }
+    let why = "too much at a time".to_owned();
+    match call {
+        Some(call) => Some(Bridge::respond(&call, &Err(why))),
+        None => bridge.complain(client, None, why).reply,
     }
 }

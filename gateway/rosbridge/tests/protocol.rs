@@ -4,12 +4,22 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
-use xt28_rosbridge::{Bridge, Catalogue, ClientId, Event, Heard, Service, Topic};
+use xt28_rosbridge::{Bridge, Catalogue, ClientId, Event, Heard, Service, Taken, Topic};
 
 const CATALOGUE: Catalogue = Catalogue {
     published: &[Topic { name: "/arm/state", kind: "std_msgs/String" }],
-    taken: &[Topic { name: "/arm/goal", kind: "std_msgs/Float64" }],
-    services: &[Service { name: "/arm/halt", kind: "std_srvs/Trigger" }],
+    taken: &[Taken {
+        topic: Topic { name: "/arm/goal", kind: "std_msgs/Float64" },
+        distil: |message| match message["data"].as_f64() {
+            Some(data) => Ok(json!(data)),
+            None => Err("no number in data".to_owned()),
+        },
+    }],
+    services: &[Service {
+        name: "/arm/halt",
+        kind: "std_srvs/Trigger",
+        distil: |args| Ok(args.clone()),
+    }],
 };
 
 fn bridge() -> (Bridge, ClientId) {
@@ -65,7 +75,7 @@ fn what_is_published_reaches_the_owner_by_its_own_name() {
     assert_eq!(bridge.hear(client, advertise), Heard::default());
     let heard =
         bridge.hear(client, r#"{"op": "publish", "topic": "arm/goal", "msg": {"data": 0.5}}"#);
-    let message = json!({ "data": 0.5 });
+    let message = json!(0.5);
     let event = Event::Published { client, topic: "/arm/goal", message };
     assert_eq!(heard, Heard { reply: None, event: Some(event) });
 }
@@ -82,6 +92,7 @@ fn what_there_is_not_is_refused_with_what_there_is() {
         (r#"{"op": "subscribe", "topic": "/arm/state", "fragment_size": 9}"#, "fragment_size"),
         (r#"{"op": "subscribe", "topic": "/arm/state", "throttle_rate": -1}"#, "in ms"),
         (r#"{"op": "advertise_service", "service": "/x", "type": "a/B"}"#, "unknown variant"),
+        (r#"{"op": "publish", "topic": "/arm/goal", "msg": {"data": "up"}}"#, "no number in data"),
         ("hello", "not JSON"),
     ] {
         let why = complaint(&bridge.hear(client, text));
@@ -206,8 +217,9 @@ proptest! {
                 let op = reply["op"].as_str().unwrap();
                 prop_assert!(["status", "service_response", "publish"].contains(&op));
             }
-            if let Some(Event::Published { topic, .. }) = &heard.event {
+            if let Some(Event::Published { topic, message, .. }) = &heard.event {
                 prop_assert_eq!(*topic, "/arm/goal");
+                prop_assert!(message.is_number());
             }
             for (to, text) in bridge.publish(Duration::ZERO, "/arm/state", json!("up")) {
                 prop_assert_eq!(to, client);

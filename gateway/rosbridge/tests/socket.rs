@@ -8,12 +8,19 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{ClientRequestBuilder, Message, WebSocket};
-use xt28_rosbridge::{Catalogue, Event, Server, Service, Topic};
+use xt28_rosbridge::{Catalogue, Event, Server, Service, Taken, Topic};
 
 const CATALOGUE: Catalogue = Catalogue {
     published: &[Topic { name: "/state", kind: "std_msgs/String" }],
-    taken: &[Topic { name: "/goal", kind: "std_msgs/Float64" }],
-    services: &[Service { name: "/halt", kind: "std_srvs/Trigger" }],
+    taken: &[Taken {
+        topic: Topic { name: "/goal", kind: "std_msgs/Float64" },
+        distil: |message| Ok(message.clone()),
+    }],
+    services: &[Service {
+        name: "/halt",
+        kind: "std_srvs/Trigger",
+        distil: |args| Ok(args.clone()),
+    }],
 };
 /// So long without an answer is no busy machine any more.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -118,6 +125,41 @@ fn a_full_house_lets_in_who_can_shake_hands() {
 }
 
 #[test]
+fn who_finds_no_place_is_told_of() {
+    let server = server();
+    let mut clients: Vec<_> = (0..16).map(|_| connect(&server)).collect();
+    clients.iter_mut().for_each(catch_up);
+    assert!(tungstenite::connect(format!("ws://{}/", server.address())).is_err());
+    let Some(Event::Complained { why, .. }) = server.event(PATIENCE) else {
+        panic!("nothing told")
+    };
+    assert_eq!(why, "turned a client away: 16 are connected already");
+    clients.truncate(15);
+    while !matches!(server.event(PATIENCE), Some(Event::Left(_))) {}
+    catch_up(&mut connect(&server));
+}
+
+#[test]
+fn a_call_is_answered_though_its_client_said_too_much_before() {
+    let server = server();
+    let mut client = connect(&server);
+    say(&mut client, &json!({ "op": "set_level", "level": "none" }));
+    for n in 0..500 {
+        say(&mut client, &json!({ "op": "publish", "topic": "/goal", "msg": n }));
+    }
+    say(&mut client, &json!({ "op": "call_service", "id": 1, "service": "/halt" }));
+    catch_up(&mut client);
+    let Some(Event::Called(call)) = server.event(PATIENCE) else { panic!("no call first") };
+    server.respond(call, Ok(json!({})));
+    assert_eq!(hear(&mut client)["result"], true);
+    // Of more calls than anybody takes the rest is refused, and said to be.
+    for n in 0..100 {
+        say(&mut client, &json!({ "op": "call_service", "id": n, "service": "/halt" }));
+    }
+    assert_eq!(hear(&mut client)["values"], "too much at a time");
+}
+
+#[test]
 fn a_client_that_does_not_read_is_let_go_and_the_others_hear_on() {
     let server = server();
     let [mut lazy, mut keen] = [(); 2].map(|()| connect(&server));
@@ -154,5 +196,5 @@ fn one_who_shouts_is_told_so_and_the_others_are_served() {
     say(&mut calm, &json!({ "op": "call_service", "id": 1, "service": "/halt" }));
     catch_up(&mut calm);
     let taken: Vec<_> = std::iter::from_fn(|| server.event(Duration::ZERO)).collect();
-    assert!(matches!(taken.last(), Some(Event::Called(_))) && taken.len() < 100, "{taken:?}");
+    assert!(matches!(taken.first(), Some(Event::Called(_))) && taken.len() < 100, "{taken:?}");
 }

@@ -4,6 +4,7 @@
 //! its messages, sits. Neither waits for the other: an answer counts from the tick it is found at, and is as old as
 //! the observation that it answers, so that the safety kernel sees a controller that falls behind.
 
+use core::time::Duration;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -23,6 +24,8 @@ pub struct External {
     pace: Pace,
     map: ActionMap,
     desk: Arc<Mutex<Desk>>,
+    /// Where the front joint is held once the task is over, rad.
+    held_rad: Option<f64>,
 }
 
 /// The controller's end.
@@ -57,8 +60,8 @@ pub enum Refusal {
         /// The newest one.
         newest: u64,
     },
-    /// A later one was answered already.
-    #[error("observation {seq} comes after an answer to {answered}: answers go in order")]
+    /// It, or a later one, was answered already.
+    #[error("observation {seq} is no use any more: {answered} was answered already")]
     Overtaken {
         /// The one named.
         seq: u64,
@@ -67,14 +70,26 @@ pub enum Refusal {
     },
 }
 
+/// How a controller kept up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Account {
+    /// Observations that it was shown.
+    pub shown: u64,
+    /// Answers of it that were taken.
+    pub answers: u64,
+    /// From an observation to its answer, all together: whole ticks, as the gateway finds them.
+    pub delay_sum: Duration,
+    /// The longest.
+    pub delay_max: Duration,
+}
+
 #[derive(Debug)]
 struct Desk {
-    /// How many were shown.
-    shown: u64,
+    account: Account,
     /// The newest one, until the controller takes it.
     fresh: Option<Seen>,
-    /// When the last ones were sensed, the newest last.
-    sensed_at: VecDeque<SimTime>,
+    /// When the last ones were put together and sensed, the newest last.
+    lately: VecDeque<(SimTime, SimTime)>,
     /// The one answered last.
     answered: u64,
     /// The newest answer, until the gateway takes it.
@@ -94,15 +109,15 @@ impl External {
     #[must_use]
     pub fn new(machine: &Machine, pace: Pace) -> (Self, Seat) {
         let desk = Arc::new(Mutex::new(Desk {
-            shown: 0,
+            account: Account::default(),
             fresh: None,
-            sensed_at: VecDeque::with_capacity(ANSWERABLE),
+            lately: VecDeque::with_capacity(ANSWERABLE),
             answered: 0,
             answer: None,
             outcome: Outcome::Endless,
         }));
         let seat = Seat(Arc::clone(&desk));
-        (Self { pace, map: ActionMap::new(machine), desk }, seat)
+        (Self { pace, map: ActionMap::new(machine), desk, held_rad: None }, seat)
     }
 }
 
@@ -114,20 +129,18 @@ impl Policy for External {
     fn act(&mut self, observation: &Observation) -> Option<Command> {
         let mut desk = lock(&self.desk);
         if desk.is_over() {
-            // Nobody has to go on answering for a machine that only stands.
-            return Some(Command {
-                throttle: 0.0,
-                front_angle_rad: observation.front_joint_rad,
-                arms: Arms::Position([None; 6]),
-                brake: true,
-            });
+            // Nobody has to go on answering for a machine that only stands. One that is not armed by then need not be.
+            observation.since_arming_s?;
+            let front_angle_rad = *self.held_rad.get_or_insert(observation.front_joint_rad);
+            let arms = Arms::Position([None; 6]);
+            return Some(Command { throttle: 0.0, front_angle_rad, arms, brake: true });
         }
-        desk.shown += 1;
-        desk.fresh = Some(Seen { seq: desk.shown, observation: *observation });
-        if desk.sensed_at.len() == ANSWERABLE {
-            desk.sensed_at.pop_front();
+        desk.account.shown += 1;
+        desk.fresh = Some(Seen { seq: desk.account.shown, observation: *observation });
+        if desk.lately.len() == ANSWERABLE {
+            desk.lately.pop_front();
         }
-        desk.sensed_at.push_back(observation.sensed_at);
+        desk.lately.push_back((observation.at, observation.sensed_at));
         None
     }
 
@@ -148,27 +161,31 @@ impl Seat {
         lock(&self.0).fresh.take()
     }
 
-    /// Answers the observation of this number. Values beyond -1 to 1 are held to the limits by the safety kernel.
+    /// Answers, at `now`, the observation of this number. Values beyond -1 to 1 are held to the limits by the safety kernel.
     ///
     /// # Errors
     /// [`Refusal`]: there is no such observation, or it is no use any more. The last answer stays in force.
-    pub fn answer(&self, seq: u64, action: Action) -> Result<(), Refusal> {
+    pub fn answer(&self, now: SimTime, seq: u64, action: Action) -> Result<(), Refusal> {
         let mut desk = lock(&self.0);
         if desk.is_over() {
             // It was under way when the task ended.
             return Ok(());
         }
-        let (newest, answered) = (desk.shown, desk.answered);
+        let (newest, answered) = (desk.account.shown, desk.answered);
         if seq == 0 || seq > newest {
             return Err(Refusal::NotShown { seq, newest });
         }
         let back = usize::try_from(newest - seq).unwrap_or(usize::MAX);
-        let Some(&sensed_at) = desk.sensed_at.iter().rev().nth(back) else {
+        let Some(&(at, sensed_at)) = desk.lately.iter().rev().nth(back) else {
             return Err(Refusal::TooOld { seq, newest });
         };
-        if seq < answered {
+        if seq <= answered {
             return Err(Refusal::Overtaken { seq, answered });
         }
+        let delay = now.since(at);
+        desk.account.answers += 1;
+        desk.account.delay_sum += delay;
+        desk.account.delay_max = desk.account.delay_max.max(delay);
         desk.answered = seq;
         desk.answer = Some((action, sensed_at));
         Ok(())
@@ -178,14 +195,29 @@ impl Seat {
     #[must_use]
     pub fn is_answered(&self) -> bool {
         let desk = lock(&self.0);
-        desk.answered == desk.shown || desk.is_over()
+        desk.answered == desk.account.shown || desk.is_over()
     }
 
-    /// Says how the task stands. One that is over holds the machine, and asks for no more answers.
+    /// The number of the newest observation and of the one answered last; 0 is none.
+    #[must_use]
+    pub fn owed(&self) -> (u64, u64) {
+        let desk = lock(&self.0);
+        (desk.account.shown, desk.answered)
+    }
+
+    /// How the controller has kept up so far.
+    #[must_use]
+    pub fn account(&self) -> Account {
+        lock(&self.0).account
+    }
+
+    /// Says that the task is over, and how; once. The machine is then held, and no more answers are asked for.
     pub fn conclude(&self, outcome: Outcome) {
         let mut desk = lock(&self.0);
-        desk.outcome = outcome;
-        desk.answer = None;
+        if !desk.is_over() {
+            desk.outcome = outcome;
+            desk.answer = None;
+        }
     }
 }
 
@@ -229,29 +261,49 @@ mod tests {
         let shown = seat.take().unwrap();
         assert_eq!((shown.seq, shown.observation), (2, seen(250)));
         assert!(seat.take().is_none() && !seat.is_answered());
-        seat.answer(1, Action([0.5; 8])).unwrap();
+        seat.answer(SimTime::from_millis(2000), 1, Action([0.5; 8])).unwrap();
         let answer = policy.answer().unwrap();
         assert_eq!(answer.sensed_at, SimTime::from_millis(120));
         assert_eq!(answer.command, ActionMap::new(&Machine::xt28()).command(&Action([0.5; 8])));
         assert!(policy.answer().is_none());
-        seat.answer(2, Action::default()).unwrap();
+        seat.answer(SimTime::from_millis(2000), 2, Action::default()).unwrap();
         assert!(seat.is_answered());
+        let account = seat.account();
+        assert_eq!((account.shown, account.answers), (2, 2));
+        assert_eq!(account.delay_max, Duration::from_millis(1875));
+        assert_eq!(account.delay_sum, Duration::from_millis(1875 + 1750));
     }
 
     #[test]
     fn what_was_not_shown_is_too_old_or_comes_too_late_is_no_answer() {
         let (mut policy, seat) = External::new(&Machine::xt28(), Pace::Tick);
         let none = Action::default();
-        assert_eq!(seat.answer(0, none), Err(Refusal::NotShown { seq: 0, newest: 0 }));
+        assert_eq!(
+            seat.answer(SimTime::from_millis(2000), 0, none),
+            Err(Refusal::NotShown { seq: 0, newest: 0 })
+        );
         for tick in 1..=100 {
             policy.act(&seen(10 * tick));
         }
-        assert_eq!(seat.answer(101, none), Err(Refusal::NotShown { seq: 101, newest: 100 }));
-        assert_eq!(seat.answer(36, none), Err(Refusal::TooOld { seq: 36, newest: 100 }));
-        seat.answer(37, none).unwrap();
+        assert_eq!(
+            seat.answer(SimTime::from_millis(2000), 101, none),
+            Err(Refusal::NotShown { seq: 101, newest: 100 })
+        );
+        assert_eq!(
+            seat.answer(SimTime::from_millis(2000), 36, none),
+            Err(Refusal::TooOld { seq: 36, newest: 100 })
+        );
+        seat.answer(SimTime::from_millis(2000), 37, none).unwrap();
         assert_eq!(policy.answer().unwrap().sensed_at, SimTime::from_millis(365));
-        seat.answer(90, none).unwrap();
-        assert_eq!(seat.answer(89, none), Err(Refusal::Overtaken { seq: 89, answered: 90 }));
+        seat.answer(SimTime::from_millis(2000), 90, none).unwrap();
+        assert_eq!(
+            seat.answer(SimTime::from_millis(2000), 90, none),
+            Err(Refusal::Overtaken { seq: 90, answered: 90 })
+        );
+        assert_eq!(
+            seat.answer(SimTime::from_millis(2000), 89, none),
+            Err(Refusal::Overtaken { seq: 89, answered: 90 })
+        );
         assert_eq!(policy.answer().unwrap().sensed_at, SimTime::from_millis(895));
     }
 
@@ -259,12 +311,19 @@ mod tests {
     fn a_task_that_is_over_holds_the_machine_without_answers() {
         let (mut policy, seat) = External::new(&Machine::xt28(), Pace::Fix);
         policy.act(&seen(125));
-        seat.answer(1, Action([1.0; 8])).unwrap();
+        seat.answer(SimTime::from_millis(2000), 1, Action([1.0; 8])).unwrap();
         seat.conclude(Outcome::Reached);
-        seat.answer(1, Action([1.0; 8])).unwrap();
+        seat.answer(SimTime::from_millis(2000), 1, Action([1.0; 8])).unwrap();
         assert!(policy.answer().is_none() && seat.is_answered());
-        let held = policy.act(&seen(250)).unwrap();
-        assert!(held.brake && held.throttle == 0.0 && held.front_angle_rad == 0.3);
-        assert_eq!((held.arms, policy.outcome()), (Arms::Position([None; 6]), Outcome::Reached));
+        assert_eq!(policy.act(&seen(250)), None, "what is not armed stays so");
+        for drifted_rad in [0.3, 0.2] {
+            let (since_arming_s, front_joint_rad) = (Some(1.0), drifted_rad);
+            let armed = Observation { since_arming_s, front_joint_rad, ..seen(250) };
+            let held = policy.act(&armed).unwrap();
+            assert!(held.brake && held.throttle == 0.0 && held.front_angle_rad == 0.3);
+            assert_eq!(held.arms, Arms::Position([None; 6]));
+        }
+        seat.conclude(Outcome::Failed("too late".to_owned()));
+        assert_eq!(policy.outcome(), Outcome::Reached);
     }
 }

@@ -11,7 +11,9 @@ use crate::{GatewayConfig, Pose};
 #[derive(Debug, thiserror::Error)]
 pub enum SpecError {
     /// No policy of that name.
-    #[error("no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE, rosbridge:PORT or hold")]
+    #[error(
+        "no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE, rosbridge:[ADDRESS:]PORT[,tick] or hold"
+    )]
     Unknown {
         /// What was given.
         spec: String,

@@ -27,7 +27,8 @@ impl Listen {
             None => (rest, Pace::Fix),
         };
         let own = |port: u16| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
-        let address = place.parse().map(own).or_else(|_| place.parse());
+        let port = place.strip_prefix("localhost:").unwrap_or(place);
+        let address = port.parse().map(own).or_else(|_| place.parse());
         let address = address.map_err(|_| SpecError::Address { spec: spec.to_owned() })?;
         Ok(Some(Self { address, pace }))
     }
@@ -46,10 +47,11 @@ mod tests {
         assert_eq!(heard("rosbridge:9090"), ("127.0.0.1:9090".to_owned(), Pace::Fix));
         assert_eq!(heard("rosbridge:0.0.0.0:80,tick"), ("0.0.0.0:80".to_owned(), Pace::Tick));
         assert_eq!(heard("rosbridge:[::1]:9090").0, "[::1]:9090");
+        assert_eq!(heard("rosbridge:localhost:9090").0, "127.0.0.1:9090");
         for other in ["hold", "goto:1,2,3", "rosbridge", ""] {
             assert_eq!(Listen::parse(other).unwrap(), None, "{other}");
         }
-        for bad in ["rosbridge:", "rosbridge:70000", "rosbridge:localhost:1", "rosbridge:1,fast"] {
+        for bad in ["rosbridge:", "rosbridge:70000", "rosbridge:localhost", "rosbridge:1,fast"] {
             assert!(
                 Listen::parse(bad).unwrap_err().to_string().contains("rosbridge:9090"),
                 "{bad}"

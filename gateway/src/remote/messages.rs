@@ -77,11 +77,17 @@ const fn located_message(located: &Located, age_s: f64) -> LocatedMessage {
 }
 
 /// `xt28_msgs/Action`: eight numbers of [`Action`], and the `seq` of the observation that they answer.
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ActionMessage {
     seq: u64,
     action: [f64; 8],
+}
+
+/// What of a message is an action: all of it, or it is none.
+pub(super) fn distil_action(message: &Value) -> Result<Value, String> {
+    let (seq, Action(action)) = action(message)?;
+    Ok(json!(ActionMessage { seq, action }))
 }
 
 /// Reads an action and what it answers.
@@ -92,6 +98,13 @@ pub(super) fn action(message: &Value) -> Result<(u64, Action), String> {
             "no action: {error}; give {{\"seq\": of the observation, \"action\": eight numbers}}"
         )),
     }
+}
+
+/// Whether a task that is over was done, by the name `data` or, as the protocol also has it, by its place.
+pub(super) fn distil_finish(args: &Value) -> Result<Value, String> {
+    let data = args.get("data").or_else(|| args.get(0)).and_then(Value::as_bool);
+    let why = "give data: true where the task is done, false where it is given up";
+    data.map(Value::from).ok_or_else(|| why.to_owned())
 }
 
 /// `xt28_msgs/Status`: where the gateway is in its life, and what stands against going on.
@@ -187,6 +200,26 @@ mod tests {
         ] {
             let why = action(&bad).unwrap_err();
             assert!(why.contains(says) && why.contains("eight numbers"), "{bad}: {why}");
+        }
+    }
+
+    proptest::proptest! {
+        /// Any eight numbers are an action if and only if JSON has a form for all of them.
+        #[test]
+        fn any_bits_are_an_action_or_none(bits in proptest::array::uniform8(proptest::num::u64::ANY)) {
+            let sent = bits.map(f64::from_bits);
+            let text = json!({ "seq": 1, "action": sent }).to_string();
+            let read = action(&serde_json::from_str(&text).unwrap());
+            if sent.iter().any(|number| !number.is_finite()) {
+                proptest::prop_assert!(read.is_err());
+            } else {
+                // To the last digit but one, as JSON's numbers are read.
+                let (_, Action(read)) = read.unwrap();
+                let near = |(a, b): (&f64, &f64)| {
+                    (a - b).abs() <= f64::MIN_POSITIVE + 4.0 * f64::EPSILON * b.abs()
+                };
+                proptest::prop_assert!(read.iter().zip(&sent).all(near), "{:?} {:?}", read, sent);
+            }
         }
     }
 }

@@ -34,6 +34,11 @@ impl Pace {
         self.lateness_max = self.lateness_max.max(late);
     }
 
+    /// Takes the schedule to have begun so much later: the run was held up, and is not late for it.
+    pub(crate) fn begin_later(&mut self, by: Duration) {
+        self.start += by;
+    }
+
     /// How late the latest tick was, ms; only in real time.
     pub(crate) fn lateness_max_ms(&self) -> Option<f64> {
         self.realtime.then_some(self.lateness_max.as_secs_f64() * 1e3)

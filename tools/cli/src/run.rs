@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use xt28_machine::SimTime;
 use xt28_scenarios::{
-    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup,
+    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup, Terms,
 };
 use xt28_sim::Solver;
 
@@ -41,7 +42,7 @@ pub(crate) struct Run {
     /// `virtual`, or a CAN interface such as vcan0, where emulator and gateway run as programs
     #[arg(long, default_value = VIRTUAL, value_name = "BUS")]
     bus: String,
-    /// Pace the virtual bus by wall time; a real bus always is
+    /// Pace the virtual bus by wall time, which waits for no controller once it drives; a real bus always is
     #[arg(long)]
     realtime: bool,
     /// Write the candump log here
@@ -112,16 +113,13 @@ impl Run {
     }
 
     fn lockstep(&self, setup: &Setup, artefacts: &Artefacts) -> Result<(Recording, Cost), Failure> {
-        let mut run = match setup.listen()? {
-            Some(listen) => {
-                let driver = Controller::open(setup, listen, PATIENCE)
-                    .map_err(|error| format!("{}: cannot listen: {error}", listen.address))?;
-                eprintln!("a controller may connect to ws://{}", driver.0.address());
-                Lockstep::with_controller(setup, driver, artefacts.log_writer()?)?
+        let bar = progress_bar(setup);
+        let mut run = match self.controller(setup, &bar)? {
+            Some(controller) => {
+                Lockstep::with_controller(setup, controller, artefacts.log_writer()?)?
             }
             None => Lockstep::new(setup, artefacts.log_writer()?)?,
         };
-        let bar = progress_bar(setup);
         let mut pace = Pace::start(self.realtime);
         let (mut emulator, mut ticks) = (Duration::ZERO, 0_u32);
         loop {
@@ -132,8 +130,8 @@ impl Run {
             };
             emulator += cost.emulator;
             ticks += 1;
-            for why in run.refused() {
-                bar.suspend(|| eprintln!("{:8.2} s  rosbridge: {why}", run.now().as_secs_f64()));
+            if self.realtime {
+                pace.begin_later(run.take_held_up());
             }
             bar.set_position(run.now().as_nanos() / 1_000_000);
         }
@@ -147,6 +145,20 @@ impl Run {
             lateness_max_ms: pace.lateness_max_ms(),
         };
         Ok((recording, cost))
+    }
+
+    /// Listens for a controller elsewhere, if one is to drive.
+    fn controller(&self, setup: &Setup, bar: &ProgressBar) -> Result<Option<Controller>, Failure> {
+        let terms = Terms { patience: PATIENCE, waits: !self.realtime };
+        let beside = bar.clone();
+        let hearer = Box::new(move |at: SimTime, what: &str| {
+            beside.suspend(|| eprintln!("{:8.2} s  controller: {what}", at.as_secs_f64()));
+        });
+        let controller = Controller::open(setup, terms, hearer)?;
+        if let Some(controller) = &controller {
+            eprintln!("a controller may connect to ws://{}", controller.address());
+        }
+        Ok(controller)
     }
 }
 

@@ -1,4 +1,4 @@
-//! What clients of the rosbridge were refused, on stderr: each once, and no flood of them.
+//! What clients were refused, for whoever runs the gateway: each once, and no flood of them.
 
 use core::time::Duration;
 
@@ -11,19 +11,11 @@ const OTHERS_MAX: usize = 8;
 
 /// What was told lately.
 #[derive(Debug, Default)]
-pub(crate) struct Complaints(Vec<(SimTime, String)>);
+pub(super) struct Complaints(Vec<(SimTime, String)>);
 
 impl Complaints {
-    /// Tells what is news.
-    pub(crate) fn tell(&mut self, now: SimTime, refused: &[String]) {
-        for why in refused {
-            if self.is_news(now, why) {
-                eprintln!("{:8.2} s  rosbridge: {why}", now.as_secs_f64());
-            }
-        }
-    }
-
-    fn is_news(&mut self, now: SimTime, why: &str) -> bool {
+    /// Whether it is to be told.
+    pub(super) fn is_news(&mut self, now: SimTime, why: &str) -> bool {
         self.0.retain(|(at, _)| now.since(*at) < AGAIN_AFTER);
         let news = self.0.len() < OTHERS_MAX && self.0.iter().all(|(_, told)| told != why);
         if news {

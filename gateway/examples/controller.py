@@ -64,10 +64,9 @@ def main():
             return
         here = seen["located"]
         if here is not None and abs(args.east - here["east_m"]) < 0.15 and abs(seen["speed_m_s"]) < 0.05:
-            # Said before the answer, so that the machine holds from this observation on; and not waited for: this
-            # thread is the one that would hear the response.
-            over.set()
-            finish.call(roslibpy.ServiceRequest({"data": True}), lambda _: None, None)
+            # Said before the answer, so that the machine holds from this observation on, and not waited for: this
+            # thread is the one that would hear the response. Refused until a first answer was taken.
+            finish.call(roslibpy.ServiceRequest({"data": True}), lambda _: over.set(), lambda _: None)
         action.publish({"seq": seen["seq"], "action": act(seen, args.east)})
 
     roslibpy.Topic(ros, "/xt28/observation", "xt28_msgs/Observation").subscribe(on_observation)

@@ -8,7 +8,6 @@ use std::time::{Duration, Instant, SystemTime};
 use gateway::policy::Account;
 use gateway::{
     Gateway, GatewayConfig, Listen, Order, Outcome, Pace, Phase, Policy, Reason, Remote, Status,
-    policy,
 };
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use xt28_dbc::Outbox;
@@ -24,6 +23,8 @@ use crate::talk::Talk;
 use crate::wire::Wire;
 
 const TICK: Duration = Duration::from_millis(10);
+/// How long the last lines are waited for.
+const TALK_END: Duration = Duration::from_millis(200);
 
 /// What a run came to.
 pub(crate) struct Finished {
@@ -54,10 +55,10 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         origin: args.origin,
         fix_least: args.least_fix.into(),
         accuracy_max_m: args.least_accuracy,
-        arm_at_start: listen.is_none_or(|listen| listen.address.ip().is_loopback()),
+        arm_at_start: listen.is_none_or(|listen| listen.is_private()),
         ..GatewayConfig::new(&machine)
     };
-    let (policy, remote) = driver(args, listen, &machine, &config)?;
+    let (policy, remote) = policy(args, listen, &machine, &config)?;
     let port = match &args.gnss {
         Some(path) => Some(
             SerialPort::open(path)
@@ -98,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
 }
 
 /// What drives, and the talk with it where it thinks elsewhere.
-fn driver(
+fn policy(
     args: &Args,
     listen: Option<Listen>,
     machine: &Machine,
@@ -108,7 +109,7 @@ fn driver(
         if args.map.is_some() {
             return Err(Problem::MapUnused);
         }
-        return Ok((policy::from_spec(&args.policy, machine)?, None));
+        return Ok((gateway::policy::from_spec(&args.policy, machine)?, None));
     };
     let map = args.map.as_deref().map(surveyed).transpose()?;
     let (remote, policy) = Remote::open(listen, machine, config, map)
@@ -157,6 +158,7 @@ impl Run {
     fn until_done(mut self, args: &Args) -> Finished {
         let mut lateness = Lateness::new();
         let broke = self.go_on(args, &mut lateness).err();
+        self.talk.end(TALK_END);
         let status = self.gateway.status();
         let interrupted = self.interrupt.load(Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
@@ -187,7 +189,7 @@ impl Run {
             lateness.note(now.saturating_sub(due));
             self.read_gnss(&mut bytes);
             self.tick(now, &mut out)?;
-            tell(now, &mut told, &self.gateway);
+            tell(now, &mut told, &self.gateway, &self.talk);
             self.end_if_due(now, args);
             if self.ending {
                 if self.gateway.is_silent() {
@@ -229,7 +231,7 @@ impl Run {
         let at = sim_time(self.freshness.came_in(self.start.elapsed()));
         match port.drain(bytes, |bytes| self.gateway.on_gnss(at, bytes)) {
             Ok(false) => {}
-            Ok(true) => eprintln!("gateway: the receiver's port was closed"),
+            Ok(true) => self.talk.say("gateway: the receiver's port was closed".to_owned()),
             Err(error) => {
                 self.port = None;
                 self.broke = Some(Problem::ReadGnss(error));
@@ -256,7 +258,7 @@ impl Run {
         if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
             (asked, status.phase, status.blocked)
         {
-            eprintln!("{:8.2} s  not armed: {}", now.as_secs_f64(), status.told(why));
+            self.talk.say(format!("{:8.2} s  not armed: {}", now.as_secs_f64(), status.told(why)));
         }
         if ran && !matches!(status.phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
@@ -276,8 +278,8 @@ impl Run {
         let now = sim_time(self.start.elapsed());
         let wanted = remote.hear(now);
         wanted.order.into_iter().for_each(|order| self.gateway.order(order));
-        for why in wanted.refused {
-            self.talk.say(format!("{:8.2} s  rosbridge: {why}", now.as_secs_f64()));
+        for what in wanted.news {
+            self.talk.say(format!("{:8.2} s  controller: {what}", now.as_secs_f64()));
         }
     }
 
@@ -306,8 +308,8 @@ impl Run {
     }
 }
 
-/// Says on stderr when the safety kernel changes its phase.
-fn tell(now: Duration, told: &mut Phase, gateway: &Gateway) {
+/// Says when the safety kernel changes its phase.
+fn tell(now: Duration, told: &mut Phase, gateway: &Gateway, talk: &Talk) {
     let status = gateway.status();
     let phase = status.phase;
     let news = core::mem::discriminant(&phase) != core::mem::discriminant(told);
@@ -315,13 +317,13 @@ fn tell(now: Duration, told: &mut Phase, gateway: &Gateway) {
     if !news {
         return;
     }
-    let seconds = now.as_secs_f64();
-    match phase {
-        Phase::Disarmed => eprintln!("{seconds:8.2} s  disarmed"),
-        Phase::Handshake { .. } => eprintln!("{seconds:8.2} s  handshake with both ECUs"),
-        Phase::Armed => eprintln!("{seconds:8.2} s  armed"),
-        Phase::Blocked(reason) => eprintln!("{seconds:8.2} s  stopped: {}", status.told(reason)),
-    }
+    let what = match phase {
+        Phase::Disarmed => "disarmed".to_owned(),
+        Phase::Handshake { .. } => "handshake with both ECUs".to_owned(),
+        Phase::Armed => "armed".to_owned(),
+        Phase::Blocked(reason) => format!("stopped: {}", status.told(reason)),
+    };
+    talk.say(format!("{:8.2} s  {what}", now.as_secs_f64()));
 }
 
 fn sim_time(since_start: Duration) -> SimTime {

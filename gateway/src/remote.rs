@@ -17,6 +17,7 @@ mod listen;
 mod messages;
 
 use core::time::Duration;
+use std::collections::BTreeMap;
 use std::io;
 use std::net::SocketAddr;
 
@@ -49,8 +50,18 @@ const CATALOGUE: Catalogue = Catalogue {
         distil: messages::distil_action,
     }],
     services: &[
-        Service { name: FINISH, kind: "std_srvs/SetBool", distil: messages::distil_finish },
-        Service { name: EMERGENCY_STOP, kind: "std_srvs/Trigger", distil: |_| Ok(Value::Null) },
+        Service {
+            name: FINISH,
+            kind: "std_srvs/SetBool",
+            urgent: false,
+            distil: messages::distil_finish,
+        },
+        Service {
+            name: EMERGENCY_STOP,
+            kind: "std_srvs/Trigger",
+            urgent: true,
+            distil: |_| Ok(Value::Null),
+        },
     ],
 };
 
@@ -67,6 +78,8 @@ pub struct Remote {
     /// What the local height map is cut from.
     map: Option<Terrain>,
     heights_m: Vec<f32>,
+    /// From where those come that are connected.
+    addresses: BTreeMap<ClientId, SocketAddr>,
     /// Who drives, and when it answered last.
     driver: Option<(ClientId, SimTime)>,
     /// Its silence after which another one may drive.
@@ -82,8 +95,8 @@ pub struct Remote {
 pub struct Wanted {
     /// To be passed on to the gateway.
     pub order: Option<Order>,
-    /// What was refused, in words for whoever runs the gateway: one line each, and no flood of them.
-    pub refused: Vec<String>,
+    /// Who drives and what was refused, in words for whoever runs the gateway: one line each, and no flood of them.
+    pub news: Vec<String>,
 }
 
 /// What came of waiting for a controller.
@@ -116,6 +129,7 @@ impl Remote {
             seat,
             map,
             heights_m: Vec::new(),
+            addresses: BTreeMap::new(),
             driver: None,
             handover,
             left: false,
@@ -188,30 +202,40 @@ impl Remote {
     }
 
     fn take(&mut self, now: SimTime, event: Event, wanted: &mut Wanted) {
-        let refused = match event {
-            Event::Published { client, message, .. } => {
-                let driven = self.drive(now, client, &message);
-                driven.err().inspect(|why| self.server.complain(client, why.clone()))
+        let done = match event {
+            Event::Came { client, address } => {
+                self.addresses.insert(client, address);
+                Ok(())
             }
-            Event::Called(call) => {
-                self.serve(call, wanted);
-                None
+            Event::Left(client) => {
+                self.addresses.remove(&client);
+                if self.driver.is_some_and(|(driver, _)| driver == client) {
+                    self.left = true;
+                    wanted.news.push("the controller has left".to_owned());
+                }
+                Ok(())
             }
-            Event::Left(client) => self.driver.filter(|(driver, _)| *driver == client).map(|_| {
-                self.left = true;
-                "the controller has left".to_owned()
-            }),
-            Event::Complained { why, .. } => Some(why),
+            Event::Published { client, message, .. } => self
+                .drive(now, client, &message, wanted)
+                .inspect_err(|why| self.server.complain(client, why.clone())),
+            Event::Called(call) => self.serve(call, wanted),
+            Event::Complained { why, .. } => Err(why),
         };
-        if let Some(why) = refused.map(|why| printable(&why))
+        if let Err(why) = done.map_err(|why| printable(&why))
             && self.complaints.is_news(now, &why)
         {
-            wanted.refused.push(why);
+            wanted.news.push(why);
         }
     }
 
     /// An action of a client.
-    fn drive(&mut self, now: SimTime, client: ClientId, message: &Value) -> Result<(), String> {
+    fn drive(
+        &mut self,
+        now: SimTime,
+        client: ClientId,
+        message: &Value,
+        wanted: &mut Wanted,
+    ) -> Result<(), String> {
         let (seq, action) = messages::action(message)?;
         if let Some((driver, at)) = self.driver
             && driver != client
@@ -220,27 +244,35 @@ impl Remote {
             return Err("another controller drives".to_owned());
         }
         self.seat.answer(now, seq, action).map_err(|refusal| refusal.to_string())?;
+        if self.driver.is_none_or(|(driver, _)| driver != client) {
+            let from = self.addresses.get(&client).map_or_else(String::new, SocketAddr::to_string);
+            wanted.news.push(format!("{from} drives"));
+        }
         self.driver = Some((client, now));
         self.left = false;
         Ok(())
     }
 
-    fn serve(&self, call: Call, wanted: &mut Wanted) {
+    fn serve(&self, call: Call, wanted: &mut Wanted) -> Result<(), String> {
         let done = match call.service {
             FINISH => self.finish(&call),
-            _ => {
+            EMERGENCY_STOP => {
                 wanted.order = Some(Order::EmergencyStop);
                 Ok(())
             }
+            other => Err(format!("nobody serves {other}")),
         };
-        let answer = done.map(|()| json!({ "success": true, "message": "" }));
+        let answer = done.clone().map(|()| json!({ "success": true, "message": "" }));
         self.server.respond(call, answer);
+        done
     }
 
     /// Ends the task, if it is the driver that says so.
     fn finish(&self, call: &Call) -> Result<(), String> {
         if self.driver.is_none_or(|(driver, _)| driver != call.client) {
-            return Err("only the controller that drives can end its task".to_owned());
+            let why =
+                "only the controller that drives, of which an answer was taken, can end its task";
+            return Err(why.to_owned());
         }
         let given_up = || Outcome::Failed("the controller gave up".to_owned());
         let reached = call.args == Value::Bool(true);

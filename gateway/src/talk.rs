@@ -1,7 +1,8 @@
 //! Lines on stderr that nobody waits for: where it is a pipe that nobody reads, the machine is driven all the same.
 
-use std::sync::mpsc::{SyncSender, sync_channel};
-use std::thread::JoinHandle;
+use std::io::Write;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::Duration;
 
 /// Most lines that wait; those beyond are lost.
 const LINES_MAX: usize = 64;
@@ -10,20 +11,34 @@ const LINES_MAX: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Talk {
     lines: SyncSender<String>,
-    _thread: JoinHandle<()>,
+    /// Hangs up when all was said.
+    said: Receiver<()>,
 }
 
 impl Talk {
     /// Starts it.
     pub(crate) fn start() -> std::io::Result<Self> {
-        let (lines, said) = sync_channel::<String>(LINES_MAX);
-        let thread = std::thread::Builder::new().name("talk".to_owned());
-        let _thread = thread.spawn(move || said.iter().for_each(|line| eprintln!("{line}")))?;
-        Ok(Self { lines, _thread })
+        let (lines, given) = sync_channel::<String>(LINES_MAX);
+        let (done, said) = sync_channel(0);
+        let speak = move || {
+            for line in given {
+                // A reader that is gone misses it.
+                let _ = writeln!(std::io::stderr(), "{line}");
+            }
+            drop(done);
+        };
+        std::thread::Builder::new().name("talk".to_owned()).spawn(speak)?;
+        Ok(Self { lines, said })
     }
 
     /// Says a line, now or soon.
     pub(crate) fn say(&self, line: String) {
         let _ = self.lines.try_send(line);
+    }
+
+    /// Waits until all was said, but not for ever.
+    pub(crate) fn end(self, patience: Duration) {
+        drop(self.lines);
+        let _ = self.said.recv_timeout(patience);
     }
 }

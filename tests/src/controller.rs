@@ -71,11 +71,17 @@ impl Controller {
         std::mem::replace(&mut self.held_up, Duration::ZERO)
     }
 
-    /// Shows it what the gateway saw at this tick, waits for its answer, and passes on what else it wants.
+    /// Takes what has come in since the last tick. Before the gateway's.
+    pub(crate) fn hear(&mut self, now: SimTime, gateway: &mut Gateway) {
+        let wanted = self.remote.hear(now);
+        self.pass_on(now, wanted, gateway);
+    }
+
+    /// Shows it what the gateway saw at this tick, and waits for its answer. After the gateway's.
     ///
     /// # Errors
     /// [`RunError::Controller`] where it does not answer.
-    pub(crate) fn follow(
+    pub(crate) fn show(
         &mut self,
         now: SimTime,
         gateway: &mut Gateway,
@@ -83,13 +89,15 @@ impl Controller {
     ) -> Result<(), RunError> {
         let status = gateway.status();
         self.remote.tell(now, &status);
-        let wanted = self.remote.hear(now);
-        let halted = self.pass_on(now, wanted, gateway)
-            || matches!(status.phase, Phase::Blocked(Reason::EmergencyStop));
-        if !halted && (self.terms.waits || !self.remote.has_driver()) {
-            self.wait(now, gateway, clock)?;
+        let halted = matches!(status.phase, Phase::Blocked(Reason::EmergencyStop));
+        let waits = self.terms.waits || !self.remote.has_driver();
+        if halted || !waits {
+            return Ok(());
         }
-        Ok(())
+        let begun = clock();
+        let answered = self.wait(now, gateway, clock);
+        self.held_up += clock().saturating_sub(begun);
+        answered
     }
 
     fn wait(
@@ -105,10 +113,7 @@ impl Controller {
                 if reminded { self.terms.patience } else { REMIND_AFTER.min(self.terms.patience) };
             let patience = next.saturating_sub(waited);
             match self.remote.wait(now, patience) {
-                Waited::OwesNothing => {
-                    self.held_up += waited;
-                    return Ok(());
-                }
+                Waited::OwesNothing => return Ok(()),
                 Waited::For(wanted) => {
                     if self.pass_on(now, wanted, gateway) {
                         return Ok(());
@@ -138,10 +143,10 @@ impl Controller {
         }
     }
 
-    /// Tells what was refused, and gives the gateway the order that was wanted; true if that was to stop.
+    /// Tells the news, and gives the gateway the order that was wanted; true if that was to stop.
     fn pass_on(&mut self, now: SimTime, wanted: Wanted, gateway: &mut Gateway) -> bool {
-        for why in &wanted.refused {
-            (self.hearer)(now, why);
+        for what in &wanted.news {
+            (self.hearer)(now, what);
         }
         let order = wanted.order.inspect(|order| gateway.order(*order));
         matches!(order, Some(Order::EmergencyStop))

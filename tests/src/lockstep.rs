@@ -277,13 +277,16 @@ impl<W: Write> Lockstep<W> {
         if !self.gnss.is_empty() {
             gateway.on_gnss(now, &self.gnss);
         }
+        if let Some(controller) = &mut self.controller {
+            controller.hear(now, gateway);
+        }
         self.outbox.clear();
         gateway.tick(now, &mut self.outbox);
         for frame in self.outbox.frames() {
             self.bus.send(*node, now, frame);
         }
         match &mut self.controller {
-            Some(controller) => controller.follow(now, gateway, clock),
+            Some(controller) => controller.show(now, gateway, clock),
             None => Ok(()),
         }
     }

@@ -111,6 +111,7 @@ fn controller(
 }
 
 const ONWARD: [f64; 8] = [0.4, 0.0, 0.36, 0.36, 0.36, 0.36, 0.36, 0.36];
+const BACK: [f64; 8] = [-1.0; 8];
 
 /// A stock client drives the scenario that the bench's own policy drives, and drives it the same twice.
 #[test]
@@ -137,7 +138,7 @@ fn roslibpy_drives_to_the_goal() {
         assert!(python.wait().unwrap().success());
         let report = drive.recording.report(&setup, "virtual");
         assert!(report.passed(), "{}", report.table());
-        assert_eq!((drive.driven().outcome.as_str(), drive.told.len()), ("reached", 0));
+        assert_eq!((drive.driven().outcome.as_str(), drive.told.len()), ("reached", 1));
         drive.recording.log_sha256
     };
     assert_eq!(once(), once());
@@ -160,43 +161,74 @@ fn a_controller_that_falls_silent_stops_the_machine() {
     assert!(drive.told.iter().any(|why| why.contains("has left")), "{:?}", drive.told);
 }
 
-#[test]
-fn what_is_no_action_is_refused_with_the_remedy_and_moves_nothing() {
+/// Drives ahead; at the tenth observation it says what `rubbish` makes of that one, before its answer.
+fn drive_saying(rubbish: impl Fn(&Value) -> Vec<Value> + Send + Clone + 'static) -> Drive {
     let setup = setup("straight-25m", "");
     let (drive, thread) = drive(&setup, |address| {
-        let mut tried = false;
         controller(address, move |client, seen| {
-            if !std::mem::replace(&mut tried, true) {
-                for msg in [
-                    json!({ "action": ONWARD }),
-                    json!({ "seq": seen["seq"], "action": [0.0, 1.0] }),
-                    json!({ "seq": seen["seq"], "action": ONWARD, "speed": 1 }),
-                    json!({ "seq": 1000, "action": ONWARD }),
-                    json!({ "seq": 0, "action": ONWARD }),
-                    json!([0.0]),
-                    json!({ "seq": seen["seq"], "action": ONWARD, "\u{1b}[31mred\n": 1 }),
-                ] {
-                    client.say(&json!({ "op": "publish", "topic": "/xt28/action", "msg": msg }));
-                    assert_eq!(client.hear().unwrap()["op"], "status", "{msg}");
-                }
-                // Nor does who has not driven end a task.
-                for args in [json!({}), json!({ "data": true }), json!([false])] {
-                    client.say(&json!({ "op": "call_service", "id": 1, "service": "/xt28/finish",
-                                        "args": args }));
-                    assert_eq!(client.hear().unwrap()["result"], false, "{args}");
+            if seen["seq"] == 30 {
+                for message in rubbish(seen) {
+                    client.say(&message);
+                    let told = client.hear().unwrap();
+                    let refused = told["op"] == "status" || told["result"] == false;
+                    assert!(refused, "{message}: {told}");
                 }
             }
-            client.act(seen, [0.0; 8]);
-            seen["time_s"].as_f64().unwrap() < 3.0
+            client.act(seen, ONWARD);
+            true
         })
     })
     .unwrap();
     thread.join().unwrap();
-    assert_eq!(drive.driven().outcome, "endless");
-    assert!(!drive.told.iter().any(|why| why.contains(char::is_control)), "{:?}", drive.told);
+    drive
+}
+
+#[test]
+fn what_is_no_action_is_refused_with_the_remedy_and_moves_nothing() {
+    let action = |msg| json!({ "op": "publish", "topic": "/xt28/action", "msg": msg });
+    let spoiled = drive_saying(move |seen| {
+        let all = [
+            json!({ "action": ONWARD }),
+            json!({ "seq": seen["seq"], "action": [0.0, 1.0] }),
+            json!({ "seq": seen["seq"], "action": ONWARD, "speed": 1 }),
+            json!({ "seq": 1000, "action": ONWARD }),
+            json!({ "seq": 0, "action": ONWARD }),
+            json!({ "seq": 29, "action": BACK }),
+            json!([0.0]),
+            json!({ "seq": seen["seq"], "action": ONWARD, "\u{1b}[31mred\n": 1 }),
+        ];
+        let finish = json!({ "op": "call_service", "id": 1, "service": "/xt28/finish" });
+        all.map(action).into_iter().chain([finish]).collect()
+    });
+    let clean = drive_saying(|_| Vec::new());
+    assert_eq!(spoiled.recording.log_sha256, clean.recording.log_sha256);
+    assert_eq!(spoiled.driven().outcome, "endless");
+    assert!(!spoiled.told.iter().any(|why| why.contains(char::is_control)), "{:?}", spoiled.told);
     for says in ["missing field `seq`", "invalid length 2", "unknown field `speed`", "1000 yet"] {
-        assert!(drive.told.iter().any(|why| why.contains(says)), "{says}: {:?}", drive.told);
+        assert!(spoiled.told.iter().any(|why| why.contains(says)), "{says}: {:?}", spoiled.told);
     }
+}
+
+#[test]
+fn a_task_is_ended_by_who_drives_and_by_nobody_before() {
+    let setup = setup("straight-25m", "");
+    let (drive, thread) = drive(&setup, |address| {
+        controller(address, |client, seen| {
+            let call =
+                json!({ "op": "call_service", "id": 1, "service": "/xt28/finish", "args": [true] });
+            client.say(&call);
+            let first = seen["seq"] == 1;
+            assert_eq!(client.hear().unwrap()["result"], !first);
+            client.act(seen, ONWARD);
+            first
+        })
+    })
+    .unwrap();
+    thread.join().unwrap();
+    // From then on nobody answers, and nothing stops a machine that only stands.
+    assert_eq!((drive.driven().outcome.as_str(), &drive.driven().safety_stop), ("reached", &None));
+    assert!(drive.told.iter().any(|what| what.ends_with(" drives")), "{:?}", drive.told);
+    assert!(drive.told.iter().any(|what| what.contains("can end its task")), "{:?}", drive.told);
 }
 
 #[test]
@@ -244,7 +276,7 @@ fn who_waits_to_drive_does_not_take_over_a_machine_that_moves() {
             };
             drop(driver);
             while let Some(seen) = other.see() {
-                other.act(&seen, [-1.0; 8]);
+                other.act(&seen, BACK);
             }
         })
     })

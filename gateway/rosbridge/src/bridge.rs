@@ -1,6 +1,7 @@
 //! The protocol without a socket: texts of clients in, texts for them and events for the owner out.
 
 use std::collections::BTreeMap;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use serde_json::{Value, json};
@@ -17,6 +18,13 @@ pub struct ClientId(u64);
 /// What the owner should know of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
+    /// A client is connected.
+    Came {
+        /// Who.
+        client: ClientId,
+        /// From where.
+        address: SocketAddr,
+    },
     /// A client published on a topic that is taken.
     Published {
         /// Who.
@@ -30,10 +38,10 @@ pub enum Event {
     Called(Call),
     /// A client is gone.
     Left(ClientId),
-    /// A client was told that something is wrong with what it sent.
+    /// Something is wrong with what a client sent, which was told so; or with the server itself.
     Complained {
-        /// Who.
-        client: ClientId,
+        /// Who, if it is about one that has come.
+        client: Option<ClientId>,
         /// What is wrong.
         why: String,
     },
@@ -48,6 +56,7 @@ pub struct Call {
     pub service: &'static str,
     /// What the service distils of the arguments.
     pub args: Value,
+    pub(crate) urgent: bool,
     id: Option<Value>,
     spelled: String,
 }
@@ -145,7 +154,7 @@ impl Bridge {
         let why = printable(&why);
         let wanted = self.sessions.get(&client).is_some_and(|s| s.level <= Level::Error);
         let reply = wanted.then(|| status(id, &why));
-        Heard { reply, event: Some(Event::Complained { client, why }) }
+        Heard { reply, event: Some(Event::Complained { client: Some(client), why }) }
     }
 
     fn carry_out(&mut self, client: ClientId, id: Option<Value>, op: Op) -> Result<Heard, String> {
@@ -212,16 +221,16 @@ impl Bridge {
                 self.catalogue.services.iter().map(|service| service.name).collect();
             format!("no service {spelled:?}; there are {}", names.join(", "))
         });
-        match found.and_then(|service| Ok((service.name, (service.distil)(args)?))) {
-            Ok((service, args)) => {
-                let call = Call { client, service, args, id, spelled };
+        match found.and_then(|service| Ok((service, (service.distil)(args)?))) {
+            Ok((Service { name: service, urgent, .. }, args)) => {
+                let call = Call { client, service, args, urgent: *urgent, id, spelled };
                 Heard { reply: None, event: Some(Event::Called(call)) }
             }
             Err(why) => {
                 let why = printable(&why);
                 let values = Value::from(why.as_str());
                 let reply = Some(response(&spelled, id.as_ref(), &values, false));
-                Heard { reply, event: Some(Event::Complained { client, why }) }
+                Heard { reply, event: Some(Event::Complained { client: Some(client), why }) }
             }
         }
     }

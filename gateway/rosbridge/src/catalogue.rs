@@ -31,6 +31,8 @@ pub struct Service {
     pub name: &'static str,
     /// Its type, as `std_srvs/Trigger`.
     pub kind: &'static str,
+    /// Whether a call goes before all else that waits for the owner.
+    pub urgent: bool,
     /// What is taken of a call's arguments.
     pub distil: Distil,
 }

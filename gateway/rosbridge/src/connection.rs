@@ -1,7 +1,7 @@
 //! A client's socket, never waited for: bytes in, texts out, and what is not taken yet is kept.
 
 use std::io::{self, ErrorKind};
-use std::net::TcpStream;
+use std::net::{SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::Duration;
 
@@ -13,10 +13,14 @@ use tungstenite::http::{StatusCode, header::ORIGIN};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, HandshakeError, Message, WebSocket};
 
+use crate::rationed::{Ration, Rationed};
+
 /// Longest text that a client may send, bytes. What is taken here is a tenth of it; read as JSON it grows a hundredfold.
 const TEXT_MAX: usize = 1 << 12;
 /// Most messages that are taken of one client before the others have their turn.
 const TURN: usize = 8;
+/// Most bytes that are read of one client before the others have their turn.
+const RATION: usize = 1 << 14;
 /// How long a client may be silent before the system asks whether it is there at all.
 const KEEPALIVE: Duration = Duration::from_secs(5);
 /// How often it is asked then, and how many times in vain.
@@ -28,8 +32,11 @@ type Screen = fn(&Request, Response) -> Result<Response, ErrorResponse>;
 
 /// A client that is connected, or about to be.
 pub(crate) struct Connection {
+    /// Where it comes from.
+    pub(crate) address: SocketAddr,
     /// The same socket, to be polled.
     polled: TcpStream,
+    ration: Ration,
     state: State,
     /// Something waits to be sent.
     pub(crate) waits: bool,
@@ -38,8 +45,8 @@ pub(crate) struct Connection {
 }
 
 enum State {
-    Shaking(Box<MidHandshake<ServerHandshake<TcpStream, Screen>>>),
-    Open(Box<WebSocket<TcpStream>>),
+    Shaking(Box<MidHandshake<ServerHandshake<Rationed, Screen>>>),
+    Open(Box<WebSocket<Rationed>>),
     /// Between two states.
     Gone,
 }
@@ -50,7 +57,7 @@ pub(crate) struct Ended(pub(crate) Option<String>);
 
 impl Connection {
     /// Takes up a stream that was accepted.
-    pub(crate) fn begin(stream: TcpStream) -> io::Result<Self> {
+    pub(crate) fn begin(stream: TcpStream, address: SocketAddr) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         // An answer that waits for the next one to fill a packet is late.
         stream.set_nodelay(true)?;
@@ -66,8 +73,11 @@ impl Connection {
             .max_write_buffer_size(WAITING_MAX)
             .max_message_size(Some(TEXT_MAX))
             .max_frame_size(Some(TEXT_MAX));
+        let ration = Ration::default();
+        let stream = Rationed::new(stream, ration.clone());
         let shaking = ServerHandshake::start(stream, screen as Screen, Some(config));
-        Ok(Self { polled, state: State::Shaking(Box::new(shaking)), waits: false, more: false })
+        let state = State::Shaking(Box::new(shaking));
+        Ok(Self { address, polled, ration, state, waits: false, more: false })
     }
 
     /// Whether the handshake is over.
@@ -75,11 +85,20 @@ impl Connection {
         matches!(self.state, State::Open(_))
     }
 
-    /// Takes what has come in; each text is told to `hear`.
-    pub(crate) fn read(&mut self, mut hear: impl FnMut(&str)) -> Result<(), Ended> {
+    /// Takes what has come in; each text is told to `hear`, and before them to `welcome` that the client has come.
+    pub(crate) fn read(
+        &mut self,
+        welcome: impl FnOnce(SocketAddr),
+        mut hear: impl FnMut(&str),
+    ) -> Result<(), Ended> {
+        self.ration.refill(RATION);
+        let was_open = self.is_open();
         self.shake()?;
+        if self.is_open() && !was_open {
+            welcome(self.address);
+        }
+        self.more = self.ration.is_used_up();
         let State::Open(socket) = &mut self.state else { return Ok(()) };
-        self.more = false;
         for _ in 0..TURN {
             match socket.read() {
                 Ok(Message::Text(text)) => hear(text.as_str()),
@@ -91,6 +110,7 @@ impl Connection {
                 Ok(_) => {}
                 Err(error) => {
                     settle(error)?;
+                    self.more = self.ration.is_used_up();
                     return Ok(());
                 }
             }
@@ -110,7 +130,6 @@ impl Connection {
 
     /// Sends what waits.
     pub(crate) fn flush(&mut self) -> Result<(), Ended> {
-        self.shake()?;
         let State::Open(socket) = &mut self.state else { return Ok(()) };
         self.waits = match socket.flush() {
             Ok(()) => false,

@@ -23,6 +23,7 @@ mod catalogue;
 mod connection;
 mod op;
 mod queue;
+mod rationed;
 mod rosapi;
 mod server;
 mod session;

@@ -1,6 +1,6 @@
-//! Events that wait for the owner: each client's in their order, all clients in turn, calls first.
+//! Events that wait for the owner: each client's in their order, all clients in turn, urgent calls first.
 //!
-//! So a loud client delays nobody but itself, and a call to a service is heard before what else was said.
+//! So a loud client delays nobody but itself, and an urgent call waits for nothing that was said before.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -8,12 +8,12 @@ use std::time::Duration;
 
 use crate::bridge::{ClientId, Event};
 
-/// Most events of one client that wait, beside its calls.
+/// Most events of one client that wait, beside its urgent calls.
 const EVENTS_MAX: usize = 16;
-/// Most calls of one client that wait.
-const CALLS_MAX: usize = 8;
-/// Most clients that have something waiting: also those are told apart that come and go.
-const CLIENTS_MAX: usize = 64;
+/// Most urgent calls of one client that wait.
+const URGENT_MAX: usize = 4;
+/// Most clients that have something waiting when one more leaves. Of the connected each has its place.
+const LINES_MAX: usize = 64;
 
 /// A queue between the thread and the owner.
 #[derive(Debug, Default)]
@@ -24,36 +24,44 @@ pub(crate) struct Queue {
 
 #[derive(Debug, Default)]
 struct Waiting {
-    calls: Line,
-    events: Line,
+    urgent: Lines,
+    others: Lines,
 }
 
-/// What waits, by client.
+/// What waits, by client; in the line of nobody what is about no client that the owner knows.
 #[derive(Debug, Default)]
-struct Line {
-    of: BTreeMap<ClientId, VecDeque<Event>>,
-    /// Who had his turn last.
+struct Lines {
+    of: BTreeMap<Option<ClientId>, VecDeque<Event>>,
+    /// Whose turn it was last.
     last: Option<ClientId>,
 }
 
-impl Line {
-    fn push(&mut self, client: ClientId, event: Event, most: usize) -> bool {
-        if self.of.len() >= CLIENTS_MAX && !self.of.contains_key(&client) {
-            return false;
-        }
+impl Lines {
+    fn push(&mut self, client: Option<ClientId>, event: Event, most: usize) -> bool {
         let own = self.of.entry(client).or_default();
-        let room = own.len() < most || matches!(event, Event::Left(_));
+        let room = own.len() < most;
         if room {
             own.push_back(event);
         }
         room
     }
 
+    /// Adds that one has left, however much it said before; or forgets it, where many have left lately.
+    fn leave(&mut self, client: ClientId) -> bool {
+        let room = self.of.len() < LINES_MAX;
+        if room {
+            self.of.entry(Some(client)).or_default().push_back(Event::Left(client));
+        } else {
+            self.of.remove(&Some(client));
+        }
+        room
+    }
+
     /// The oldest event of the client whose turn it is.
     fn pop(&mut self) -> Option<Event> {
-        let beyond = |last| self.of.range(last..).map(|(client, _)| *client).find(|c| *c != last);
-        let client = self.last.and_then(beyond).or_else(|| self.of.keys().next().copied())?;
-        self.last = Some(client);
+        let after = self.of.range(self.last..).map(|(client, _)| *client).find(|c| *c != self.last);
+        let client = after.or_else(|| self.of.keys().next().copied())?;
+        self.last = client;
         let own = self.of.get_mut(&client)?;
         let event = own.pop_front();
         if own.is_empty() {
@@ -64,15 +72,19 @@ impl Line {
 }
 
 impl Queue {
-    /// Adds an event; false, and nothing is added, where its client or all together have too many waiting. That one
-    /// has left is taken however much it said before.
+    /// Adds an event; false, and nothing is added, where its client has too many waiting.
     pub(crate) fn push(&self, event: Event) -> bool {
         let mut waiting = self.lock();
         let taken = match &event {
-            Event::Called(call) => waiting.calls.push(call.client, event, CALLS_MAX),
-            Event::Published { client, .. }
-            | Event::Complained { client, .. }
-            | Event::Left(client) => waiting.events.push(*client, event, EVENTS_MAX),
+            Event::Left(client) => waiting.others.leave(*client),
+            Event::Called(call) if call.urgent => {
+                waiting.urgent.push(Some(call.client), event, URGENT_MAX)
+            }
+            Event::Called(call) => waiting.others.push(Some(call.client), event, EVENTS_MAX),
+            Event::Came { client, .. } | Event::Published { client, .. } => {
+                waiting.others.push(Some(*client), event, EVENTS_MAX)
+            }
+            Event::Complained { client, .. } => waiting.others.push(*client, event, EVENTS_MAX),
         };
         if taken {
             self.news.notify_one();
@@ -83,10 +95,10 @@ impl Queue {
     /// The next event. Where there is none it is waited for, as long as `patience` says.
     pub(crate) fn pop(&self, patience: Duration) -> Option<Event> {
         let none =
-            |waiting: &mut Waiting| waiting.calls.of.is_empty() && waiting.events.of.is_empty();
+            |waiting: &mut Waiting| waiting.urgent.of.is_empty() && waiting.others.of.is_empty();
         let waited = self.news.wait_timeout_while(self.lock(), patience, none);
         let mut waiting = waited.unwrap_or_else(PoisonError::into_inner).0;
-        waiting.calls.pop().or_else(|| waiting.events.pop())
+        waiting.urgent.pop().or_else(|| waiting.others.pop())
     }
 
     fn lock(&self) -> MutexGuard<'_, Waiting> {
@@ -99,18 +111,22 @@ mod tests {
     use super::*;
     use crate::{Bridge, Catalogue, Service};
 
-    const HALT: &[Service] = &[Service {
-        name: "/halt",
-        kind: "std_srvs/Trigger",
-        distil: |_| Ok(serde_json::Value::Null),
-    }];
+    const fn service(name: &'static str, urgent: bool) -> Service {
+        Service { name, kind: "std_srvs/Trigger", urgent, distil: |_| Ok(serde_json::Value::Null) }
+    }
 
     fn bridge() -> Bridge {
-        Bridge::new(Catalogue { published: &[], taken: &[], services: HALT })
+        const SERVICES: &[Service] = &[service("/halt", true), service("/ask", false)];
+        Bridge::new(Catalogue { published: &[], taken: &[], services: SERVICES })
     }
 
     fn said(client: ClientId) -> Event {
-        Event::Complained { client, why: String::new() }
+        Event::Complained { client: Some(client), why: String::new() }
+    }
+
+    fn call(bridge: &mut Bridge, client: ClientId, service: &str) -> Event {
+        let text = format!(r#"{{"op": "call_service", "service": "{service}"}}"#);
+        bridge.hear(client, &text).event.unwrap()
     }
 
     #[test]
@@ -127,17 +143,48 @@ mod tests {
     }
 
     #[test]
-    fn a_call_is_heard_first_however_much_its_own_client_said_before() {
+    fn many_callers_leave_a_client_its_turn() {
         let mut bridge = bridge();
-        let client = bridge.connect();
+        let callers: Vec<_> = (0..15).map(|_| bridge.connect()).collect();
+        let driver = bridge.connect();
         let queue = Queue::default();
-        assert!((0..1000).any(|_| !queue.push(said(client))));
-        let call = r#"{"op": "call_service", "service": "/halt"}"#;
-        let mut called = || bridge.hear(client, call).event.unwrap();
-        assert_eq!((0..100).filter(|_| queue.push(called())).count(), CALLS_MAX);
+        for caller in callers {
+            while queue.push(call(&mut bridge, caller, "/ask")) {}
+        }
+        assert!(queue.push(said(driver)));
+        let before =
+            std::iter::from_fn(|| queue.pop(Duration::ZERO)).take_while(|e| *e != said(driver));
+        assert_eq!(before.count(), 15);
+    }
+
+    #[test]
+    fn an_urgent_call_waits_for_nothing_that_was_said_before() {
+        let mut bridge = bridge();
+        let [client, other] = [(); 2].map(|()| bridge.connect());
+        let queue = Queue::default();
+        while queue.push(said(client)) || queue.push(said(other)) {}
+        assert!(!queue.push(call(&mut bridge, client, "/ask")));
+        let halts = (0..100).filter(|_| queue.push(call(&mut bridge, client, "/halt")));
+        assert_eq!(halts.count(), URGENT_MAX);
         assert!(
-            (0..CALLS_MAX).all(|_| matches!(queue.pop(Duration::ZERO), Some(Event::Called(_))))
+            (0..URGENT_MAX).all(|_| matches!(queue.pop(Duration::ZERO), Some(Event::Called(_))))
         );
         assert_eq!(queue.pop(Duration::ZERO), Some(said(client)));
+    }
+
+    #[test]
+    fn a_client_has_its_place_however_many_came_and_went() {
+        let mut bridge = bridge();
+        let driver = bridge.connect();
+        let queue = Queue::default();
+        for _ in 0..1000 {
+            let passer = bridge.connect();
+            queue.push(said(passer));
+            queue.push(Event::Left(passer));
+            queue.push(Event::Complained { client: None, why: "garbage".to_owned() });
+        }
+        assert!(queue.push(said(driver)));
+        let waiting = std::iter::from_fn(|| queue.pop(Duration::ZERO)).count();
+        assert!(waiting <= 2 * LINES_MAX + EVENTS_MAX + 1, "{waiting}");
     }
 }

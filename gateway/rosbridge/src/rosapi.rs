@@ -17,7 +17,7 @@ pub(crate) const SERVICES: &[Service] = &[
 
 /// One that is answered at once, so that nothing of its arguments is handed on.
 const fn service(name: &'static str, kind: &'static str) -> Service {
-    Service { name, kind, distil: |_| Ok(Value::Null) }
+    Service { name, kind, urgent: false, distil: |_| Ok(Value::Null) }
 }
 
 /// The answer of one of [`SERVICES`]. An unknown name has the type "", as in rosapi.

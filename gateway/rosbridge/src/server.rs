@@ -22,6 +22,8 @@ use crate::queue::Queue;
 /// Most clients at a time.
 const CLIENTS_MAX: usize = 16;
 
+/// Most that are let in before the others have their turn.
+const GUESTS_PER_TURN: usize = 8;
 /// How long nobody is let in once there was no file for a newcomer, s.
 const DEAF_S: i64 = 1;
 
@@ -59,7 +61,7 @@ impl Server {
         rung.set_nonblocking(true)?;
         let (orders, taken) = channel();
         let events = Arc::new(Queue::default());
-        let mut desk = Desk {
+        let mut host = Host {
             listener,
             rung,
             orders: taken,
@@ -69,7 +71,7 @@ impl Server {
             deaf: false,
         };
         let thread = std::thread::Builder::new().name("rosbridge".to_owned());
-        let thread = Some(thread.spawn(move || desk.run())?);
+        let thread = Some(thread.spawn(move || host.run())?);
         Ok(Self { address, orders, events, bell, thread })
     }
 
@@ -118,7 +120,7 @@ impl Drop for Server {
 }
 
 /// What the thread has.
-struct Desk {
+struct Host {
     listener: TcpListener,
     rung: UnixStream,
     orders: Receiver<Order>,
@@ -129,7 +131,7 @@ struct Desk {
     deaf: bool,
 }
 
-impl Desk {
+impl Host {
     fn run(&mut self) {
         loop {
             let (ready, knocked) = match self.sleep() {
@@ -217,7 +219,12 @@ impl Desk {
         let mut replies = Vec::new();
         let (bridge, events) = (&mut self.bridge, &self.events);
         let served = flushed.and_then(|()| match may_read {
-            true => connection.read(|text| replies.extend(hear(bridge, events, client, text))),
+            true => connection.read(
+                |address| {
+                    events.push(Event::Came { client, address });
+                },
+                |text| replies.extend(hear(bridge, events, client, text)),
+            ),
             false => Ok(()),
         });
         for reply in replies {
@@ -243,7 +250,7 @@ impl Desk {
             connection.close();
         }
         if let Some(why) = why {
-            self.events.push(Event::Complained { client, why });
+            self.events.push(Event::Complained { client: was_open.then_some(client), why });
         }
         if was_open {
             self.events.push(Event::Left(client));
@@ -251,18 +258,16 @@ impl Desk {
     }
 
     /// Tells the owner what is about no client that it knows.
-    fn tell(&mut self, why: String) {
-        let client = self.bridge.connect();
-        self.bridge.disconnect(client);
-        self.events.push(Event::Complained { client, why });
+    fn tell(&self, why: String) {
+        self.events.push(Event::Complained { client: None, why });
     }
 
     /// Takes in who knocked. Where the house is full somebody who never finished his handshake has to go, or
     /// the newcomer.
     fn let_in(&mut self) {
-        loop {
-            let stream = match self.listener.accept() {
-                Ok((stream, _)) => stream,
+        for _ in 0..GUESTS_PER_TURN {
+            let (stream, address) = match self.listener.accept() {
+                Ok(accepted) => accepted,
                 Err(error) => {
                     // One that hung up while it waited is no reason.
                     let passes = [
@@ -285,7 +290,7 @@ impl Desk {
                 };
                 self.lose(idle, Ended(Some("never finished its handshake".to_owned())));
             }
-            if let Ok(connection) = Connection::begin(stream) {
+            if let Ok(connection) = Connection::begin(stream, address) {
                 let client = self.bridge.connect();
                 self.clients.insert(client, connection);
             }

@@ -18,6 +18,7 @@ const CATALOGUE: Catalogue = Catalogue {
     services: &[Service {
         name: "/arm/halt",
         kind: "std_srvs/Trigger",
+        urgent: true,
         distil: |args| Ok(args.clone()),
     }],
 };

@@ -32,6 +32,13 @@ impl Listen {
         let address = address.map_err(|_| SpecError::Address { spec: spec.to_owned() })?;
         Ok(Some(Self { address, pace }))
     }
+
+    /// Whether nobody but this machine can connect. Where others can, the gateway does not arm by itself: the protocol
+    /// does not say who they are.
+    #[must_use]
+    pub fn is_private(&self) -> bool {
+        self.address.ip().is_loopback()
+    }
 }
 
 #[cfg(test)]
@@ -48,6 +55,15 @@ mod tests {
         assert_eq!(heard("rosbridge:0.0.0.0:80,tick"), ("0.0.0.0:80".to_owned(), Pace::Tick));
         assert_eq!(heard("rosbridge:[::1]:9090").0, "[::1]:9090");
         assert_eq!(heard("rosbridge:localhost:9090").0, "127.0.0.1:9090");
+        let private = |spec: &str| Listen::parse(spec).unwrap().unwrap().is_private();
+        assert!(
+            private("rosbridge:1")
+                && private("rosbridge:127.0.0.9:1")
+                && private("rosbridge:[::1]:1")
+        );
+        for open in ["rosbridge:0.0.0.0:1", "rosbridge:[::]:1", "rosbridge:192.168.0.5:1,tick"] {
+            assert!(!private(open), "{open}");
+        }
         for other in ["hold", "goto:1,2,3", "rosbridge", ""] {
             assert_eq!(Listen::parse(other).unwrap(), None, "{other}");
         }

@@ -84,7 +84,7 @@ struct ActionMessage {
     action: [f64; 8],
 }
 
-/// What of a message is an action: all of it, or it is none.
+/// What of a message is an action: all of it, or it is none. What comes out is small, whatever came in.
 pub(super) fn distil_action(message: &Value) -> Result<Value, String> {
     let (seq, Action(action)) = action(message)?;
     Ok(json!(ActionMessage { seq, action }))

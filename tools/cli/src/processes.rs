@@ -44,6 +44,12 @@ pub(crate) fn run(
     // Opened only to be refused here, with one message, rather than by three programs.
     SocketCan::open(bus)?;
     setup.ensure_startable()?;
+    if setup.listen()?.is_some_and(|listen| !listen.is_private()) {
+        let policy = &setup.scenario.policy;
+        let why =
+            "the gateway would wait for an order to arm where others than this machine may drive";
+        return Err(format!("{policy:?}: {why}; give rosbridge:PORT").into());
+    }
     // Gone with the run, and nobody else's: machines in containers may share process numbers and /tmp.
     let scratch = tempfile::Builder::new().prefix("xt28-run-").tempdir()?;
     let folder = scratch.path();

@@ -244,11 +244,14 @@ impl Gateway {
             None => Action::default(),
         };
         let armed_at = self.armed_at.filter(|_| self.kernel.is_armed());
+        let lost = self.config.limits.observation;
         Observation {
             at: now,
             sensed_at,
             since_arming_s: armed_at.map(|at| now.since(at).as_secs_f64()),
-            located: self.located,
+            located: self
+                .located
+                .filter(|located| !lost.missed(Some(located.at.as_nanos()), now.as_nanos())),
             attitude: means.attitude,
             stroke_m: means.stroke_m,
             load_n: means.load_n,

@@ -3,6 +3,7 @@
 // A binary is the edge: it may read the clock, print and exit.
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
 
+mod announcer;
 mod args;
 mod departures;
 mod freshness;
@@ -11,28 +12,35 @@ mod problem;
 mod realtime;
 mod report;
 mod serial;
-mod talk;
 mod wire;
 
+use std::io::Write;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser;
+
+/// How long whoever reads stderr is waited for at the end.
+const LAST_LINES: Duration = Duration::from_secs(1);
 
 fn main() -> ExitCode {
     let args = args::Args::parse();
     match realtime::run(&args) {
-        Ok(finished) => {
-            report::tell(&finished);
+        Ok((finished, announcer)) => {
             if args.json {
-                println!("{}", report::json(&finished));
+                // A reader that is gone changes no verdict.
+                let _ = writeln!(std::io::stdout(), "{}", report::json(&finished));
             }
-            match &finished.broke {
+            report::lines(&finished).into_iter().for_each(|line| announcer.say(line));
+            let status = match &finished.broke {
                 Some(problem) => {
-                    eprintln!("gateway: {problem}");
+                    announcer.say(format!("gateway: {problem}"));
                     ExitCode::from(2)
                 }
                 None => ExitCode::from(u8::from(report::shortfall(&finished).is_some())),
-            }
+            };
+            announcer.end(LAST_LINES);
+            status
         }
         Err(problem) => {
             eprintln!("gateway: {problem}");

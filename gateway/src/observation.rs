@@ -14,7 +14,8 @@ pub struct Observation {
     pub sensed_at: SimTime,
     /// Time since arming, s; `None` while nothing the policy says reaches the machine.
     pub since_arming_s: Option<f64>,
-    /// Where the machine is; `None` before the first usable fix.
+    /// Where the machine is; `None` before the first usable fix, and once the last one is older than the safety kernel
+    /// lets an observation be.
     pub located: Option<Located>,
     /// Roll and pitch of the front frame.
     pub attitude: Attitude,

@@ -14,17 +14,15 @@ use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 use xt28_terrain::{Terrain, TerrainError, TerrainSpec};
 
+use crate::announcer::Announcer;
 use crate::args::Args;
 use crate::freshness::Freshness;
 use crate::lateness::Lateness;
 use crate::problem::Problem;
 use crate::serial::SerialPort;
-use crate::talk::Talk;
 use crate::wire::Wire;
 
 const TICK: Duration = Duration::from_millis(10);
-/// How long the last lines are waited for.
-const TALK_END: Duration = Duration::from_millis(200);
 
 /// What a run came to.
 pub(crate) struct Finished {
@@ -45,7 +43,7 @@ pub(crate) struct Finished {
 }
 
 /// Runs until the policy is done, the time is over or a signal comes.
-pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
+pub(crate) fn run(args: &Args) -> Result<(Finished, Announcer), Problem> {
     let machine = match &args.machine {
         Some(path) => Machine::load(path)?,
         None => Machine::xt28(),
@@ -90,7 +88,7 @@ pub(crate) fn run(args: &Args) -> Result<Finished, Problem> {
         halt,
         start: Instant::now(),
         freshness: Freshness::default(),
-        talk: Talk::start().map_err(Problem::Thread)?,
+        announcer: Announcer::start().map_err(Problem::Thread)?,
         ending: false,
         never_armed: None,
         broke: None,
@@ -146,7 +144,7 @@ struct Run {
     halt: Arc<AtomicBool>,
     start: Instant,
     freshness: Freshness,
-    talk: Talk,
+    announcer: Announcer,
     /// The order to disarm was given.
     ending: bool,
     never_armed: Option<Reason>,
@@ -155,16 +153,15 @@ struct Run {
 }
 
 impl Run {
-    fn until_done(mut self, args: &Args) -> Finished {
+    fn until_done(mut self, args: &Args) -> (Finished, Announcer) {
         let mut lateness = Lateness::new();
         let broke = self.go_on(args, &mut lateness).err();
-        self.talk.end(TALK_END);
         let status = self.gateway.status();
         let interrupted = self.interrupt.load(Ordering::Relaxed);
         let seconds = self.start.elapsed().as_secs_f64();
         let (frames_lost, frames_discarded) = (self.wire.lost(), self.wire.discarded());
         let closed = self.wire.close().err();
-        Finished {
+        let finished = Finished {
             status,
             lateness,
             frames_lost,
@@ -174,7 +171,8 @@ impl Run {
             interrupted,
             never_armed: self.never_armed,
             seconds,
-        }
+        };
+        (finished, self.announcer)
     }
 
     /// Ticks until the run is over and the machine left in peace.
@@ -189,7 +187,7 @@ impl Run {
             lateness.note(now.saturating_sub(due));
             self.read_gnss(&mut bytes);
             self.tick(now, &mut out)?;
-            tell(now, &mut told, &self.gateway, &self.talk);
+            tell(now, &mut told, &self.gateway, &self.announcer);
             self.end_if_due(now, args);
             if self.ending {
                 if self.gateway.is_silent() {
@@ -231,7 +229,7 @@ impl Run {
         let at = sim_time(self.freshness.came_in(self.start.elapsed()));
         match port.drain(bytes, |bytes| self.gateway.on_gnss(at, bytes)) {
             Ok(false) => {}
-            Ok(true) => self.talk.say("gateway: the receiver's port was closed".to_owned()),
+            Ok(true) => self.announcer.say("gateway: the receiver's port was closed".to_owned()),
             Err(error) => {
                 self.port = None;
                 self.broke = Some(Problem::ReadGnss(error));
@@ -258,7 +256,11 @@ impl Run {
         if let (true, Phase::Disarmed | Phase::Blocked(_), Some(why)) =
             (asked, status.phase, status.blocked)
         {
-            self.talk.say(format!("{:8.2} s  not armed: {}", now.as_secs_f64(), status.told(why)));
+            self.announcer.say(format!(
+                "{:8.2} s  not armed: {}",
+                now.as_secs_f64(),
+                status.told(why)
+            ));
         }
         if ran && !matches!(status.phase, Phase::Armed) {
             // What a full queue still holds would move the machine once the bus takes it again.
@@ -279,7 +281,7 @@ impl Run {
         let wanted = remote.hear(now);
         wanted.order.into_iter().for_each(|order| self.gateway.order(order));
         for what in wanted.news {
-            self.talk.say(format!("{:8.2} s  controller: {what}", now.as_secs_f64()));
+            self.announcer.say(format!("{:8.2} s  controller: {what}", now.as_secs_f64()));
         }
     }
 
@@ -309,7 +311,7 @@ impl Run {
 }
 
 /// Says when the safety kernel changes its phase.
-fn tell(now: Duration, told: &mut Phase, gateway: &Gateway, talk: &Talk) {
+fn tell(now: Duration, told: &mut Phase, gateway: &Gateway, announcer: &Announcer) {
     let status = gateway.status();
     let phase = status.phase;
     let news = core::mem::discriminant(&phase) != core::mem::discriminant(told);
@@ -323,7 +325,7 @@ fn tell(now: Duration, told: &mut Phase, gateway: &Gateway, talk: &Talk) {
         Phase::Armed => "armed".to_owned(),
         Phase::Blocked(reason) => format!("stopped: {}", status.told(reason)),
     };
-    talk.say(format!("{:8.2} s  {what}", now.as_secs_f64()));
+    announcer.say(format!("{:8.2} s  {what}", now.as_secs_f64()));
 }
 
 fn sim_time(since_start: Duration) -> SimTime {

@@ -17,7 +17,6 @@ mod listen;
 mod messages;
 
 use core::time::Duration;
-use std::collections::BTreeMap;
 use std::io;
 use std::net::SocketAddr;
 
@@ -78,14 +77,12 @@ pub struct Remote {
     /// What the local height map is cut from.
     map: Option<Terrain>,
     heights_m: Vec<f32>,
-    /// From where those come that are connected.
-    addresses: BTreeMap<ClientId, SocketAddr>,
     /// Who drives, and when it answered last.
     driver: Option<(ClientId, SimTime)>,
     /// Its silence after which another one may drive.
     handover: Duration,
     /// Somebody has driven, and is gone.
-    left: bool,
+    driver_left: bool,
     told_at: Option<SimTime>,
     complaints: Complaints,
 }
@@ -129,10 +126,9 @@ impl Remote {
             seat,
             map,
             heights_m: Vec::new(),
-            addresses: BTreeMap::new(),
             driver: None,
             handover,
-            left: false,
+            driver_left: false,
             told_at: None,
             complaints: Complaints::default(),
         };
@@ -190,7 +186,7 @@ impl Remote {
     /// Waits for what a controller says next, if it owes an answer to what it was shown last: for runs in simulated
     /// time, where the machine can wait. One that has left is not waited for. To be called until it owes nothing.
     pub fn wait(&mut self, now: SimTime, patience: Duration) -> Waited {
-        if self.left || self.seat.is_answered() {
+        if self.driver_left || self.seat.is_answered() {
             return Waited::OwesNothing;
         }
         let mut wanted = Wanted::default();
@@ -203,26 +199,21 @@ impl Remote {
 
     fn take(&mut self, now: SimTime, event: Event, wanted: &mut Wanted) {
         let done = match event {
-            Event::Came { client, address } => {
-                self.addresses.insert(client, address);
-                Ok(())
-            }
             Event::Left(client) => {
-                self.addresses.remove(&client);
                 if self.driver.is_some_and(|(driver, _)| driver == client) {
-                    self.left = true;
+                    self.driver_left = true;
                     wanted.news.push("the controller has left".to_owned());
                 }
                 Ok(())
             }
-            Event::Published { client, message, .. } => self
-                .drive(now, client, &message, wanted)
+            Event::Published { client, address, message, .. } => self
+                .drive(now, (client, address), &message, wanted)
                 .inspect_err(|why| self.server.complain(client, why.clone())),
             Event::Called(call) => self.serve(call, wanted),
             Event::Complained { why, .. } => Err(why),
         };
         if let Err(why) = done.map_err(|why| printable(&why))
-            && self.complaints.is_news(now, &why)
+            && self.complaints.admit(now, &why)
         {
             wanted.news.push(why);
         }
@@ -232,11 +223,15 @@ impl Remote {
     fn drive(
         &mut self,
         now: SimTime,
-        client: ClientId,
+        (client, address): (ClientId, SocketAddr),
         message: &Value,
         wanted: &mut Wanted,
     ) -> Result<(), String> {
         let (seq, action) = messages::action(message)?;
+        if self.seat.is_over() {
+            // It was under way when the task ended.
+            return Ok(());
+        }
         if let Some((driver, at)) = self.driver
             && driver != client
             && now.since(at) <= self.handover
@@ -245,11 +240,10 @@ impl Remote {
         }
         self.seat.answer(now, seq, action).map_err(|refusal| refusal.to_string())?;
         if self.driver.is_none_or(|(driver, _)| driver != client) {
-            let from = self.addresses.get(&client).map_or_else(String::new, SocketAddr::to_string);
-            wanted.news.push(format!("{from} drives"));
+            wanted.news.push(format!("{address} drives"));
         }
         self.driver = Some((client, now));
-        self.left = false;
+        self.driver_left = false;
         Ok(())
     }
 

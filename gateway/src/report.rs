@@ -1,4 +1,4 @@
-//! The result of a run: for people on stderr, for scripts on stdout.
+//! The result of a run: for people and for scripts.
 
 use gateway::policy::Account;
 use gateway::{EcuReport, Outcome, Status};
@@ -26,46 +26,45 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
     }
 }
 
-/// Two or three lines on stderr.
-pub(crate) fn tell(finished: &Finished) {
+/// A few lines for people.
+pub(crate) fn lines(finished: &Finished) -> Vec<String> {
     let Finished { status, lateness, frames_lost, frames_discarded, seconds, .. } = finished;
-    match shortfall(finished) {
-        None => eprintln!("done in {seconds:.1} s"),
-        Some(why) => eprintln!("not done after {seconds:.1} s: {why}"),
-    }
+    let mut lines = vec![match shortfall(finished) {
+        None => format!("done in {seconds:.1} s"),
+        Some(why) => format!("not done after {seconds:.1} s: {why}"),
+    }];
     if let Some(located) = &status.located {
         let p = located.pose;
         let heading_deg = p.heading_rad.to_degrees();
-        eprintln!(
+        lines.push(format!(
             "front axle at {:.2} m east, {:.2} m north, {heading_deg:.1} deg",
             p.east_m, p.north_m
-        );
+        ));
     }
     let (p99_ms, worst_ms) = (lateness.p99_ms(), lateness.worst_ms());
     let (ticks, missed) = (lateness.ticks(), lateness.missed);
-    eprintln!(
+    lines.push(format!(
         "{ticks} ticks, {missed} missed; late below {p99_ms:.3} ms in 99 %, {worst_ms:.3} ms at worst"
-    );
+    ));
     if let Some(frames @ 1..) = frames_lost {
-        eprintln!("{frames} frames came and were lost: nobody read them in time");
+        lines.push(format!("{frames} frames came and were lost: nobody read them in time"));
     }
     if let frames @ 1.. = *frames_discarded {
-        eprintln!(
+        lines.push(format!(
             "{frames} frames of ours never left: the bus took none, or they were too old by then"
-        );
+        ));
     }
-    if let Some(account) = &finished.controller {
-        tell_controller(account);
-    }
-    tell_fixes(status);
+    lines.extend(finished.controller.as_ref().map(controller_line));
+    fix_lines(status, &mut lines);
+    lines
 }
 
 /// How the controller kept up.
-fn tell_controller(account: &Account) {
+fn controller_line(account: &Account) -> String {
     let Account { shown, answers, delay_max, .. } = account;
     match mean_ms(account) {
-        None => eprintln!("the controller was shown {shown} observations and answered none"),
-        Some(mean_ms) => eprintln!(
+        None => format!("the controller was shown {shown} observations and answered none"),
+        Some(mean_ms) => format!(
             "the controller answered {answers} times to {shown} observations, after {mean_ms:.0} ms on average \
              and {} ms at worst",
             delay_max.as_millis()
@@ -81,23 +80,23 @@ fn mean_ms(account: &Account) -> Option<f64> {
 }
 
 /// What stood against the receiver's fixes, as far as something did.
-fn tell_fixes(status: &Status) {
+fn fix_lines(status: &Status, lines: &mut Vec<String>) {
     let counts = &status.counts;
     if let fixes @ 1.. = counts.fixes_without_heading {
-        eprintln!(
+        lines.push(format!(
             "{fixes} fixes came without a heading; does the receiver see its second antenna?"
-        );
+        ));
     }
     if let (None, epochs @ 1..) = (status.located, counts.fixes_incomplete) {
-        eprintln!(
+        lines.push(format!(
             "{epochs} epochs were incomplete; let the receiver send NAV-PVT and NAV-RELPOSNED"
-        );
+        ));
     }
     if let (fixes @ 1.., Some(quality)) = (counts.fixes_refused, status.quality) {
         let (fix, accuracy_m) = (quality.fix, quality.accuracy_horizontal_m);
-        eprintln!(
+        lines.push(format!(
             "{fixes} fixes were not good enough to drive by; the last one: {fix}, {accuracy_m:.2} m"
-        );
+        ));
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Terms {
     /// How long it may take to connect, and for each answer that is waited for.
     pub patience: Duration,
     /// Whether each answer is waited for, or the first alone.
-    pub waits: bool,
+    pub waits_for_each: bool,
 }
 
 /// Hears what is to be said of a controller on the way: at which time of the run, and what.
@@ -90,7 +90,7 @@ impl Controller {
         let status = gateway.status();
         self.remote.tell(now, &status);
         let halted = matches!(status.phase, Phase::Blocked(Reason::EmergencyStop));
-        let waits = self.terms.waits || !self.remote.has_driver();
+        let waits = self.terms.waits_for_each || !self.remote.has_driver();
         if halted || !waits {
             return Ok(());
         }

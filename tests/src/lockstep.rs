@@ -6,7 +6,7 @@
 //! 2. Events due at `t` happen. A node that dies is gone; what it had queued still leaves.
 //! 3. The emulator hears its frames, runs both ECUs and the plant, and queues its frames at `t`.
 //! 4. The gateway hears its frames and the receiver's bytes of this tick, and queues its frames at
-//!    `t`.
+//!    `t`. A controller elsewhere is heard before it, and shown what it saw and waited for after it.
 //!
 //! So both nodes' frames meet on the wire at `t`, and arbitration alone decides their order.
 
@@ -102,10 +102,10 @@ impl<W: Write> Lockstep<W> {
         Self::driven_by(setup, policy, None, log)
     }
 
-    /// The same under a controller elsewhere, whose answers the run waits for.
+    /// The same under a controller elsewhere.
     ///
     /// # Errors
-    /// [`RunError::Effects`].
+    /// [`RunError::Effects`]; [`RunError::Policy`] for a controller that has driven a run already.
     pub fn with_controller(
         setup: &Setup,
         mut controller: Controller,

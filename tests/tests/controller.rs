@@ -51,7 +51,7 @@ fn drive<T>(setup: &Setup, start: impl FnOnce(SocketAddr) -> T) -> Result<(Drive
 fn listening(setup: &Setup, patience: Duration, told: &Arc<Mutex<Vec<String>>>) -> Controller {
     let told = Arc::clone(told);
     let hearer = Box::new(move |_, what: &str| told.lock().unwrap().push(what.to_owned()));
-    Controller::open(setup, Terms { patience, waits: true }, hearer).unwrap().unwrap()
+    Controller::open(setup, Terms { patience, waits_for_each: true }, hearer).unwrap().unwrap()
 }
 
 struct Client(WebSocket<MaybeTlsStream<TcpStream>>);

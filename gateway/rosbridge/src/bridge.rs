@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use crate::catalogue::{Catalogue, Service, Taken, Topic, is_kind, is_name};
 use crate::op::{self, Level, Message, Op};
+use crate::printable::printable;
 use crate::rosapi;
 use crate::session::{SUBSCRIPTIONS_MAX, Session};
 
@@ -18,17 +19,12 @@ pub struct ClientId(u64);
 /// What the owner should know of.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A client is connected.
-    Came {
-        /// Who.
-        client: ClientId,
-        /// From where.
-        address: SocketAddr,
-    },
     /// A client published on a topic that is taken.
     Published {
         /// Who.
         client: ClientId,
+        /// From where.
+        address: SocketAddr,
         /// On which topic, by its name in the catalogue.
         topic: &'static str,
         /// What its topic distils of it.
@@ -36,7 +32,7 @@ pub enum Event {
     },
     /// A client called a service, and waits for [`Bridge::respond`].
     Called(Call),
-    /// A client is gone.
+    /// A client that had published something is gone.
     Left(ClientId),
     /// Something is wrong with what a client sent, which was told so; or with the server itself.
     Complained {
@@ -95,17 +91,18 @@ impl Bridge {
         }
     }
 
-    /// A new client.
-    pub fn connect(&mut self) -> ClientId {
+    /// A new client, from `address`.
+    pub fn connect(&mut self, address: SocketAddr) -> ClientId {
         let client = ClientId(self.next);
         self.next += 1;
-        self.sessions.insert(client, Session::default());
+        self.sessions.insert(client, Session::new(address));
         client
     }
 
-    /// A client is gone.
-    pub fn disconnect(&mut self, client: ClientId) {
-        self.sessions.remove(&client);
+    /// A client is gone: what the owner should know of that.
+    pub fn disconnect(&mut self, client: ClientId) -> Option<Event> {
+        let session = self.sessions.remove(&client)?;
+        session.has_published.then_some(Event::Left(client))
     }
 
     /// A text of a client. One that is no message of the protocol, or asks for what there is not, is answered by
@@ -170,7 +167,9 @@ impl Bridge {
             Op::Publish { topic, msg } => {
                 let taken = taken(&catalogue, &topic)?;
                 let message = (taken.distil)(&msg)?;
-                let event = Event::Published { client, topic: taken.topic.name, message };
+                session.has_published = true;
+                let (address, topic) = (session.address, taken.topic.name);
+                let event = Event::Published { client, address, topic, message };
                 return Ok(Heard { reply: None, event: Some(event) });
             }
             Op::Subscribe { topic, kind, throttle_rate, fragment_size, compression } => {
@@ -234,15 +233,6 @@ impl Bridge {
             }
         }
     }
-}
-
-/// Most of a complaint that is told, in characters: it may quote what a client sent.
-const TOLD_MAX: usize = 400;
-
-/// A complaint that a terminal can be given: in one line, not long, without what would steer it.
-#[must_use]
-pub fn printable(why: &str) -> String {
-    why.chars().take(TOLD_MAX).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
 fn published(catalogue: &Catalogue, asked: &str) -> Result<&'static Topic, String> {

@@ -1,7 +1,7 @@
 //! A client's socket, never waited for: bytes in, texts out, and what is not taken yet is kept.
 
 use std::io::{self, ErrorKind};
-use std::net::{SocketAddr, TcpStream};
+use std::net::TcpStream;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::Duration;
 
@@ -25,6 +25,9 @@ const RATION: usize = 1 << 14;
 const KEEPALIVE: Duration = Duration::from_secs(5);
 /// How often it is asked then, and how many times in vain.
 const PROBES: (Duration, u32) = (Duration::from_secs(1), 3);
+/// How long what was sent may go unacknowledged, ms.
+#[cfg(target_os = "linux")]
+const UNACKNOWLEDGED_MS: u32 = 8_000;
 /// Most that waits to be sent, bytes: a client that is this far behind does not read any more.
 const WAITING_MAX: usize = 1 << 22;
 
@@ -32,16 +35,14 @@ type Screen = fn(&Request, Response) -> Result<Response, ErrorResponse>;
 
 /// A client that is connected, or about to be.
 pub(crate) struct Connection {
-    /// Where it comes from.
-    pub(crate) address: SocketAddr,
     /// The same socket, to be polled.
     polled: TcpStream,
     ration: Ration,
     state: State,
     /// Something waits to be sent.
-    pub(crate) waits: bool,
+    pub(crate) unsent: bool,
     /// Something may have come in that was not taken yet; the socket does not tell of it again.
-    pub(crate) more: bool,
+    pub(crate) unread: bool,
 }
 
 enum State {
@@ -57,7 +58,7 @@ pub(crate) struct Ended(pub(crate) Option<String>);
 
 impl Connection {
     /// Takes up a stream that was accepted.
-    pub(crate) fn begin(stream: TcpStream, address: SocketAddr) -> io::Result<Self> {
+    pub(crate) fn begin(stream: TcpStream) -> io::Result<Self> {
         stream.set_nonblocking(true)?;
         // An answer that waits for the next one to fill a packet is late.
         stream.set_nodelay(true)?;
@@ -66,6 +67,9 @@ impl Connection {
         sockopt::set_tcp_keepidle(&stream, KEEPALIVE)?;
         sockopt::set_tcp_keepintvl(&stream, PROBES.0)?;
         sockopt::set_tcp_keepcnt(&stream, PROBES.1)?;
+        // While something that was sent is not acknowledged no such question is asked.
+        #[cfg(target_os = "linux")]
+        sockopt::set_tcp_user_timeout(&stream, UNACKNOWLEDGED_MS)?;
         let polled = stream.try_clone()?;
         let config = WebSocketConfig::default()
             .read_buffer_size(1 << 14)
@@ -77,7 +81,7 @@ impl Connection {
         let stream = Rationed::new(stream, ration.clone());
         let shaking = ServerHandshake::start(stream, screen as Screen, Some(config));
         let state = State::Shaking(Box::new(shaking));
-        Ok(Self { address, polled, ration, state, waits: false, more: false })
+        Ok(Self { polled, ration, state, unsent: false, unread: false })
     }
 
     /// Whether the handshake is over.
@@ -85,19 +89,11 @@ impl Connection {
         matches!(self.state, State::Open(_))
     }
 
-    /// Takes what has come in; each text is told to `hear`, and before them to `welcome` that the client has come.
-    pub(crate) fn read(
-        &mut self,
-        welcome: impl FnOnce(SocketAddr),
-        mut hear: impl FnMut(&str),
-    ) -> Result<(), Ended> {
+    /// Takes what has come in; each text is told to `hear`.
+    pub(crate) fn read(&mut self, mut hear: impl FnMut(&str)) -> Result<(), Ended> {
         self.ration.refill(RATION);
-        let was_open = self.is_open();
         self.shake()?;
-        if self.is_open() && !was_open {
-            welcome(self.address);
-        }
-        self.more = self.ration.is_used_up();
+        self.unread = self.ration.is_used_up();
         let State::Open(socket) = &mut self.state else { return Ok(()) };
         for _ in 0..TURN {
             match socket.read() {
@@ -110,12 +106,12 @@ impl Connection {
                 Ok(_) => {}
                 Err(error) => {
                     settle(error)?;
-                    self.more = self.ration.is_used_up();
+                    self.unread = self.ration.is_used_up();
                     return Ok(());
                 }
             }
         }
-        self.more = true;
+        self.unread = true;
         Ok(())
     }
 
@@ -123,7 +119,7 @@ impl Connection {
     pub(crate) fn send(&mut self, text: String) -> Result<(), Ended> {
         let State::Open(socket) = &mut self.state else { return Ok(()) };
         if let Err(error) = socket.send(Message::text(text)) {
-            self.waits = settle(error)?;
+            self.unsent = settle(error)?;
         }
         Ok(())
     }
@@ -131,7 +127,7 @@ impl Connection {
     /// Sends what waits.
     pub(crate) fn flush(&mut self) -> Result<(), Ended> {
         let State::Open(socket) = &mut self.state else { return Ok(()) };
-        self.waits = match socket.flush() {
+        self.unsent = match socket.flush() {
             Ok(()) => false,
             Err(error) => settle(error)?,
         };

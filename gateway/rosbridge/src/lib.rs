@@ -21,13 +21,16 @@
 mod bridge;
 mod catalogue;
 mod connection;
+mod host;
 mod op;
+mod printable;
 mod queue;
 mod rationed;
 mod rosapi;
 mod server;
 mod session;
 
-pub use bridge::{Bridge, Call, ClientId, Event, Heard, printable};
+pub use bridge::{Bridge, Call, ClientId, Event, Heard};
 pub use catalogue::{Catalogue, Distil, Service, Taken, Topic};
+pub use printable::printable;
 pub use server::Server;

@@ -46,12 +46,11 @@ pub(crate) enum Op {
 }
 
 /// How much of what is wrong a client wants to be told, most first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Level {
     Info,
     Warning,
-    #[default]
     Error,
     None,
 }

@@ -12,8 +12,11 @@ use crate::bridge::{ClientId, Event};
 const EVENTS_MAX: usize = 16;
 /// Most urgent calls of one client that wait.
 const URGENT_MAX: usize = 4;
-/// Most clients that have something waiting when one more leaves. Of the connected each has its place.
-const LINES_MAX: usize = 64;
+/// Most clients that have something waiting when one more leaves, and most with an urgent call. Beside it each of the
+/// connected has its place.
+const CLIENTS_MAX: usize = 64;
+/// Most urgent calls in a row, where something else waits.
+const URGENT_IN_A_ROW: u32 = 4;
 
 /// A queue between the thread and the owner.
 #[derive(Debug, Default)]
@@ -24,19 +27,38 @@ pub(crate) struct Queue {
 
 #[derive(Debug, Default)]
 struct Waiting {
-    urgent: Lines,
-    others: Lines,
+    urgent: Turns,
+    others: Turns,
+    /// Urgent calls since something else had its turn.
+    in_a_row: u32,
+}
+
+impl Waiting {
+    fn is_empty(&self) -> bool {
+        self.urgent.of.is_empty() && self.others.of.is_empty()
+    }
+
+    fn pop(&mut self) -> Option<Event> {
+        if (self.in_a_row < URGENT_IN_A_ROW || self.others.of.is_empty())
+            && let Some(call) = self.urgent.pop()
+        {
+            self.in_a_row += 1;
+            return Some(call);
+        }
+        self.in_a_row = 0;
+        self.others.pop()
+    }
 }
 
 /// What waits, by client; in the line of nobody what is about no client that the owner knows.
 #[derive(Debug, Default)]
-struct Lines {
+struct Turns {
     of: BTreeMap<Option<ClientId>, VecDeque<Event>>,
     /// Whose turn it was last.
     last: Option<ClientId>,
 }
 
-impl Lines {
+impl Turns {
     fn push(&mut self, client: Option<ClientId>, event: Event, most: usize) -> bool {
         let own = self.of.entry(client).or_default();
         let room = own.len() < most;
@@ -48,7 +70,7 @@ impl Lines {
 
     /// Adds that one has left, however much it said before; or forgets it, where many have left lately.
     fn leave(&mut self, client: ClientId) -> bool {
-        let room = self.of.len() < LINES_MAX;
+        let room = self.of.len() < CLIENTS_MAX;
         if room {
             self.of.entry(Some(client)).or_default().push_back(Event::Left(client));
         } else {
@@ -77,11 +99,13 @@ impl Queue {
         let mut waiting = self.lock();
         let taken = match &event {
             Event::Left(client) => waiting.others.leave(*client),
+            // Where so many want the same, one more changes nothing.
             Event::Called(call) if call.urgent => {
-                waiting.urgent.push(Some(call.client), event, URGENT_MAX)
+                waiting.urgent.of.len() < CLIENTS_MAX
+                    && waiting.urgent.push(Some(call.client), event, URGENT_MAX)
             }
             Event::Called(call) => waiting.others.push(Some(call.client), event, EVENTS_MAX),
-            Event::Came { client, .. } | Event::Published { client, .. } => {
+            Event::Published { client, .. } => {
                 waiting.others.push(Some(*client), event, EVENTS_MAX)
             }
             Event::Complained { client, .. } => waiting.others.push(*client, event, EVENTS_MAX),
@@ -94,11 +118,9 @@ impl Queue {
 
     /// The next event. Where there is none it is waited for, as long as `patience` says.
     pub(crate) fn pop(&self, patience: Duration) -> Option<Event> {
-        let none =
-            |waiting: &mut Waiting| waiting.urgent.of.is_empty() && waiting.others.of.is_empty();
-        let waited = self.news.wait_timeout_while(self.lock(), patience, none);
-        let mut waiting = waited.unwrap_or_else(PoisonError::into_inner).0;
-        waiting.urgent.pop().or_else(|| waiting.others.pop())
+        let waited =
+            self.news.wait_timeout_while(self.lock(), patience, |waiting| waiting.is_empty());
+        waited.unwrap_or_else(PoisonError::into_inner).0.pop()
     }
 
     fn lock(&self) -> MutexGuard<'_, Waiting> {
@@ -120,6 +142,10 @@ mod tests {
         Bridge::new(Catalogue { published: &[], taken: &[], services: SERVICES })
     }
 
+    fn connect(bridge: &mut Bridge) -> ClientId {
+        bridge.connect(std::net::SocketAddr::from(([127, 0, 0, 1], 1)))
+    }
+
     fn said(client: ClientId) -> Event {
         Event::Complained { client: Some(client), why: String::new() }
     }
@@ -132,7 +158,7 @@ mod tests {
     #[test]
     fn a_loud_client_delays_nobody_but_itself() {
         let mut bridge = bridge();
-        let [loud, calm, third] = [(); 3].map(|()| bridge.connect());
+        let [loud, calm, third] = [(); 3].map(|()| connect(&mut bridge));
         let queue = Queue::default();
         assert_eq!((0..1000).filter(|_| queue.push(said(loud))).count(), EVENTS_MAX);
         assert!(queue.push(said(calm)) && queue.push(said(third)) && queue.push(Event::Left(loud)));
@@ -145,8 +171,8 @@ mod tests {
     #[test]
     fn many_callers_leave_a_client_its_turn() {
         let mut bridge = bridge();
-        let callers: Vec<_> = (0..15).map(|_| bridge.connect()).collect();
-        let driver = bridge.connect();
+        let callers: Vec<_> = (0..15).map(|_| connect(&mut bridge)).collect();
+        let driver = connect(&mut bridge);
         let queue = Queue::default();
         for caller in callers {
             while queue.push(call(&mut bridge, caller, "/ask")) {}
@@ -160,7 +186,7 @@ mod tests {
     #[test]
     fn an_urgent_call_waits_for_nothing_that_was_said_before() {
         let mut bridge = bridge();
-        let [client, other] = [(); 2].map(|()| bridge.connect());
+        let [client, other] = [(); 2].map(|()| connect(&mut bridge));
         let queue = Queue::default();
         while queue.push(said(client)) || queue.push(said(other)) {}
         assert!(!queue.push(call(&mut bridge, client, "/ask")));
@@ -175,16 +201,19 @@ mod tests {
     #[test]
     fn a_client_has_its_place_however_many_came_and_went() {
         let mut bridge = bridge();
-        let driver = bridge.connect();
+        let driver = connect(&mut bridge);
         let queue = Queue::default();
         for _ in 0..1000 {
-            let passer = bridge.connect();
+            let passer = connect(&mut bridge);
             queue.push(said(passer));
+            queue.push(call(&mut bridge, passer, "/halt"));
             queue.push(Event::Left(passer));
             queue.push(Event::Complained { client: None, why: "garbage".to_owned() });
         }
         assert!(queue.push(said(driver)));
-        let waiting = std::iter::from_fn(|| queue.pop(Duration::ZERO)).count();
-        assert!(waiting <= 2 * LINES_MAX + EVENTS_MAX + 1, "{waiting}");
+        let waiting: Vec<_> = std::iter::from_fn(|| queue.pop(Duration::ZERO)).collect();
+        assert!(waiting.len() <= 3 * CLIENTS_MAX + EVENTS_MAX + 1, "{}", waiting.len());
+        let before = waiting.iter().position(|event| *event == said(driver));
+        assert!(before.is_some_and(|before| before <= 10), "though all would halt: {before:?}");
     }
 }

@@ -18,6 +18,10 @@ impl Ration {
         self.0.store(bytes, Ordering::Relaxed);
     }
 
+    fn spend(&self, bytes: usize) {
+        self.0.fetch_sub(bytes, Ordering::Relaxed);
+    }
+
     /// Whether nothing is left.
     pub(crate) fn is_used_up(&self) -> bool {
         self.0.load(Ordering::Relaxed) == 0
@@ -45,7 +49,7 @@ impl Read for Rationed {
         }
         let most = left.min(buffer.len());
         let read = self.stream.read(&mut buffer[..most])?;
-        self.ration.refill(left - read);
+        self.ration.spend(read);
         Ok(read)
     }
 }

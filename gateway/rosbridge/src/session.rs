@@ -1,5 +1,6 @@
 //! One client: what it subscribed to, and how much it wants to be told.
 
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use serde_json::Value;
@@ -10,9 +11,11 @@ use crate::op::Level;
 pub(crate) const SUBSCRIPTIONS_MAX: usize = 64;
 
 /// What a client asked for and has not taken back.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Session {
+    pub(crate) address: SocketAddr,
     pub(crate) level: Level,
+    pub(crate) has_published: bool,
     subscriptions: Vec<Subscription>,
 }
 
@@ -30,6 +33,10 @@ struct Subscription {
 }
 
 impl Session {
+    pub(crate) const fn new(address: SocketAddr) -> Self {
+        Self { address, level: Level::Error, has_published: false, subscriptions: Vec::new() }
+    }
+
     /// Adds a subscription; one of the same identifier and topic is replaced. False if there are too many.
     pub(crate) fn subscribe(
         &mut self,
@@ -81,7 +88,7 @@ mod tests {
 
     #[test]
     fn a_throttled_topic_comes_no_more_often_than_the_most_eager_subscription_wants() {
-        let mut session = Session::default();
+        let mut session = Session::new(SocketAddr::from(([127, 0, 0, 1], 1)));
         assert!(session.subscribe(Some(1.into()), "/a", "a".to_owned(), MS(300)));
         assert!(session.subscribe(Some(2.into()), "/a", "a".to_owned(), MS(100)));
         assert!(session.subscribe(Some(3.into()), "/b", "/b".to_owned(), MS(0)));
@@ -98,7 +105,7 @@ mod tests {
 
     #[test]
     fn subscriptions_have_an_end_and_one_asked_for_again_is_no_second() {
-        let mut session = Session::default();
+        let mut session = Session::new(SocketAddr::from(([127, 0, 0, 1], 1)));
         let mut ask = |id: u64| session.subscribe(Some(id.into()), "/a", "/a".to_owned(), MS(0));
         assert!((0..1000).all(|_| ask(0)));
         assert!((1..64).all(&mut ask));

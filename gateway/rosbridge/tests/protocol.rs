@@ -1,5 +1,6 @@
 //! The protocol without a socket: what clients say, what they hear, what reaches the owner.
 
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::time::Duration;
 
 use proptest::prelude::*;
@@ -23,9 +24,11 @@ const CATALOGUE: Catalogue = Catalogue {
     }],
 };
 
+const FROM: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 1));
+
 fn bridge() -> (Bridge, ClientId) {
     let mut bridge = Bridge::new(CATALOGUE);
-    let client = bridge.connect();
+    let client = bridge.connect(FROM);
     (bridge, client)
 }
 
@@ -77,8 +80,18 @@ fn what_is_published_reaches_the_owner_by_its_own_name() {
     let heard =
         bridge.hear(client, r#"{"op": "publish", "topic": "arm/goal", "msg": {"data": 0.5}}"#);
     let message = json!(0.5);
-    let event = Event::Published { client, topic: "/arm/goal", message };
+    let event = Event::Published { client, address: FROM, topic: "/arm/goal", message };
     assert_eq!(heard, Heard { reply: None, event: Some(event) });
+}
+
+#[test]
+fn that_one_has_left_is_told_of_who_had_published() {
+    let (mut bridge, client) = bridge();
+    bridge.hear(client, r#"{"op": "publish", "topic": "/arm/goal", "msg": {"data": 0.5}}"#);
+    assert_eq!(bridge.disconnect(client), Some(Event::Left(client)));
+    let watcher = bridge.connect(FROM);
+    bridge.hear(watcher, r#"{"op": "subscribe", "topic": "/arm/state"}"#);
+    assert_eq!([watcher, client].map(|gone| bridge.disconnect(gone)), [None, None]);
 }
 
 #[test]
@@ -145,7 +158,7 @@ fn rosapi_says_what_there_is() {
     let kind = ask("/rosapi/service_type", json!({ "service": "/arm/halt" }));
     assert_eq!(kind, json!({ "type": "std_srvs/Trigger" }));
     let mut bridge = Bridge::new(CATALOGUE);
-    let client = bridge.connect();
+    let client = bridge.connect(FROM);
     bridge.publish(Duration::from_millis(2500), "/arm/state", Value::Null);
     let time = r#"{"op": "call_service", "service": "/rosapi/get_time"}"#;
     let time = said(&bridge.hear(client, time))["values"]["time"].clone();

@@ -161,14 +161,19 @@ impl Seat {
         lock(&self.0).fresh.take()
     }
 
-    /// Answers, at `now`, the observation of this number. Values beyond -1 to 1 are held to the limits by the safety kernel.
+    /// Whether the task is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        lock(&self.0).is_over()
+    }
+
+    /// Answers, at `now`, the observation of this number; nothing comes of it once the task is over. Values beyond -1 to 1 are held to the limits by the safety kernel.
     ///
     /// # Errors
     /// [`Refusal`]: there is no such observation, or it is no use any more. The last answer stays in force.
     pub fn answer(&self, now: SimTime, seq: u64, action: Action) -> Result<(), Refusal> {
         let mut desk = lock(&self.0);
         if desk.is_over() {
-            // It was under way when the task ended.
             return Ok(());
         }
         let (newest, answered) = (desk.account.shown, desk.answered);

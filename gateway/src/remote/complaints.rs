@@ -14,14 +14,14 @@ const OTHERS_MAX: usize = 8;
 pub(super) struct Complaints(Vec<(SimTime, String)>);
 
 impl Complaints {
-    /// Whether it is to be told.
-    pub(super) fn is_news(&mut self, now: SimTime, why: &str) -> bool {
+    /// Whether it is to be told, which it then was.
+    pub(super) fn admit(&mut self, now: SimTime, why: &str) -> bool {
         self.0.retain(|(at, _)| now.since(*at) < AGAIN_AFTER);
-        let news = self.0.len() < OTHERS_MAX && self.0.iter().all(|(_, told)| told != why);
-        if news {
+        let told = self.0.len() < OTHERS_MAX && self.0.iter().all(|(_, other)| other != why);
+        if told {
             self.0.push((now, why.to_owned()));
         }
-        news
+        told
     }
 }
 
@@ -33,9 +33,9 @@ mod tests {
     fn a_flood_is_told_in_drops() {
         let mut complaints = Complaints::default();
         let at = SimTime::from_millis;
-        assert!(complaints.is_news(at(0), "a") && complaints.is_news(at(10), "b"));
-        assert!(!complaints.is_news(at(4990), "a") && complaints.is_news(at(5000), "a"));
-        let told = (0..100).filter(|n| complaints.is_news(at(5010), &n.to_string())).count();
+        assert!(complaints.admit(at(0), "a") && complaints.admit(at(10), "b"));
+        assert!(!complaints.admit(at(4990), "a") && complaints.admit(at(5000), "a"));
+        let told = (0..100).filter(|n| complaints.admit(at(5010), &n.to_string())).count();
         assert_eq!(told, OTHERS_MAX - 1);
     }
 }

@@ -149,7 +149,7 @@ impl Run {
 
     /// Listens for a controller elsewhere, if one is to drive.
     fn controller(&self, setup: &Setup, bar: &ProgressBar) -> Result<Option<Controller>, Failure> {
-        let terms = Terms { patience: PATIENCE, waits: !self.realtime };
+        let terms = Terms { patience: PATIENCE, waits_for_each: !self.realtime };
         let beside = bar.clone();
         let hearer = Box::new(move |at: SimTime, what: &str| {
             beside.suspend(|| eprintln!("{:8.2} s  controller: {what}", at.as_secs_f64()));

@@ -9,13 +9,13 @@ const LINES_MAX: usize = 64;
 
 /// A thread that says what it is given.
 #[derive(Debug)]
-pub(crate) struct Talk {
+pub(crate) struct Announcer {
     lines: SyncSender<String>,
     /// Hangs up when all was said.
     said: Receiver<()>,
 }
 
-impl Talk {
+impl Announcer {
     /// Starts it.
     pub(crate) fn start() -> std::io::Result<Self> {
         let (lines, given) = sync_channel::<String>(LINES_MAX);
@@ -27,7 +27,7 @@ impl Talk {
             }
             drop(done);
         };
-        std::thread::Builder::new().name("talk".to_owned()).spawn(speak)?;
+        std::thread::Builder::new().name("announcer".to_owned()).spawn(speak)?;
         Ok(Self { lines, said })
     }
 

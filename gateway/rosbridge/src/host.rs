@@ -13,8 +13,8 @@ use rustix::io::Errno;
 
 use crate::bridge::{Bridge, ClientId, Event};
 use crate::connection::{Connection, Ended};
+use crate::errand::Errand;
 use crate::queue::Queue;
-use crate::server::Errand;
 
 /// Most clients at a time.
 const CLIENTS_MAX: usize = 16;

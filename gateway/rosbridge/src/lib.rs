@@ -21,6 +21,7 @@
 mod bridge;
 mod catalogue;
 mod connection;
+mod errand;
 mod host;
 mod op;
 mod printable;

@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use crate::bridge::{Bridge, Call, ClientId, Event};
 use crate::catalogue::Catalogue;
+use crate::errand::Errand;
 use crate::host::Host;
 use crate::queue::Queue;
 
@@ -24,14 +25,6 @@ pub struct Server {
     /// A byte wakes the thread.
     bell: UnixStream,
     thread: Option<JoinHandle<()>>,
-}
-
-/// What the owner wants of the thread.
-pub(crate) enum Errand {
-    Publish { at: Duration, topic: &'static str, message: Value },
-    Respond { call: Call, answer: Result<Value, String> },
-    Complain { client: ClientId, why: String },
-    End,
 }
 
 impl Server {

@@ -28,11 +28,15 @@ pub struct Terms {
 /// Hears what is to be said of a controller on the way: at which time of the run, and what.
 pub type Hearer = Box<dyn FnMut(SimTime, &str) + Send>;
 
-/// The talk with a controller that connects over rosbridge.
+/// A controller that is listened for, to drive one run.
 pub struct Controller {
+    policy: External,
+    talk: Talk,
+}
+
+/// The talk with it while it drives.
+pub(crate) struct Talk {
     remote: Remote,
-    /// What the gateway is to drive by, until it does.
-    policy: Option<External>,
     terms: Terms,
     hearer: Hearer,
     held_up: Duration,
@@ -52,20 +56,23 @@ impl Controller {
         let config = GatewayConfig::new(machine);
         let (remote, policy) = Remote::open(listen, machine, &config, map)
             .map_err(|source| RunError::Listen { address: listen.address, source })?;
-        Ok(Some(Self { remote, policy: Some(policy), terms, hearer, held_up: Duration::ZERO }))
-    }
-
-    /// The gateway's end.
-    pub(crate) fn take_policy(&mut self) -> Option<External> {
-        self.policy.take()
+        let talk = Talk { remote, terms, hearer, held_up: Duration::ZERO };
+        Ok(Some(Self { policy, talk }))
     }
 
     /// Where it is listened for.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
-        self.remote.address()
+        self.talk.remote.address()
     }
 
+    /// What the gateway drives by, and what the run does around it.
+    pub(crate) fn split(self) -> (External, Talk) {
+        (self.policy, self.talk)
+    }
+}
+
+impl Talk {
     /// How long the run was held up since the last call, for a pace by wall time to begin anew from there.
     pub(crate) const fn take_held_up(&mut self) -> Duration {
         std::mem::replace(&mut self.held_up, Duration::ZERO)
@@ -122,7 +129,7 @@ impl Controller {
                 Waited::InVain => in_vain = waited.max(next),
             }
             if in_vain >= self.terms.patience {
-                let (address, patience) = (self.address(), self.terms.patience);
+                let (address, patience) = (self.remote.address(), self.terms.patience);
                 return Err(RunError::Controller { address, patience, owed: self.owed() });
             }
             if in_vain >= REMIND_AFTER && !reminded {

@@ -23,6 +23,7 @@ use xt28_machine::SimTime;
 use xt28_sim::STEP;
 use xt28_sim::effects::OverlayError;
 
+use crate::controller::Talk;
 use crate::decode::Decoder;
 use crate::digest::HashingWriter;
 use crate::recording::Recording;
@@ -33,8 +34,8 @@ pub struct Lockstep<W: Write> {
     bus: VirtualBus,
     emulator: Option<(NodeId, Emulator)>,
     gateway: Option<(NodeId, Gateway)>,
-    /// What the gateway is driven by, where that is elsewhere.
-    controller: Option<Controller>,
+    /// With what the gateway is driven by, where that is elsewhere.
+    talk: Option<Talk>,
     /// What a gateway that was killed had said of itself.
     driven: Option<Driven>,
     events: Vec<(SimTime, Incident)>,
@@ -105,23 +106,20 @@ impl<W: Write> Lockstep<W> {
     /// The same under a controller elsewhere.
     ///
     /// # Errors
-    /// [`RunError::Effects`]; [`RunError::Policy`] for a controller that has driven a run already.
+    /// [`RunError::Effects`].
     pub fn with_controller(
         setup: &Setup,
-        mut controller: Controller,
+        controller: Controller,
         log: W,
     ) -> Result<Self, RunError> {
-        match controller.take_policy() {
-            Some(policy) => Self::driven_by(setup, Box::new(policy), Some(controller), log),
-            // One that drove another run has no more to give.
-            None => Self::new(setup, log),
-        }
+        let (policy, talk) = controller.split();
+        Self::driven_by(setup, Box::new(policy), Some(talk), log)
     }
 
     fn driven_by(
         setup: &Setup,
         policy: Box<dyn Policy>,
-        controller: Option<Controller>,
+        talk: Option<Talk>,
         log: W,
     ) -> Result<Self, RunError> {
         let Setup { scenario, machine, overlay, solver, terrain, seed, .. } = setup;
@@ -144,7 +142,7 @@ impl<W: Write> Lockstep<W> {
             bus,
             emulator: Some(emulator),
             gateway: Some(gateway),
-            controller,
+            talk,
             driven: None,
             events: scenario.events.iter().map(|e| (instant(e.at_s), e.what)).collect(),
             now: SimTime::ZERO,
@@ -165,7 +163,7 @@ impl<W: Write> Lockstep<W> {
 
     /// How long a controller elsewhere held up the run since the last call.
     pub fn take_held_up(&mut self) -> Duration {
-        self.controller.as_mut().map_or(Duration::ZERO, Controller::take_held_up)
+        self.talk.as_mut().map_or(Duration::ZERO, Talk::take_held_up)
     }
 
     /// Share of the run that is done, 0 to 1.
@@ -277,16 +275,16 @@ impl<W: Write> Lockstep<W> {
         if !self.gnss.is_empty() {
             gateway.on_gnss(now, &self.gnss);
         }
-        if let Some(controller) = &mut self.controller {
-            controller.hear(now, gateway);
+        if let Some(talk) = &mut self.talk {
+            talk.hear(now, gateway);
         }
         self.outbox.clear();
         gateway.tick(now, &mut self.outbox);
         for frame in self.outbox.frames() {
             self.bus.send(*node, now, frame);
         }
-        match &mut self.controller {
-            Some(controller) => controller.show(now, gateway, clock),
+        match &mut self.talk {
+            Some(talk) => talk.show(now, gateway, clock),
             None => Ok(()),
         }
     }

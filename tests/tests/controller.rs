@@ -1,9 +1,7 @@
 //! A controller outside, over rosbridge, at the wheel of a run in lockstep.
-#![allow(clippy::disallowed_methods, clippy::disallowed_macros)] // finds its client; says what is skipped
 
-use std::io::{self, Write};
+use std::io;
 use std::net::{SocketAddr, TcpStream};
-use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -112,37 +110,6 @@ fn controller(
 
 const ONWARD: [f64; 8] = [0.4, 0.0, 0.36, 0.36, 0.36, 0.36, 0.36, 0.36];
 const BACK: [f64; 8] = [-1.0; 8];
-
-/// A stock client drives the scenario that the bench's own policy drives, and drives it the same twice.
-#[test]
-fn roslibpy_drives_to_the_goal() {
-    let found = Command::new("python3")
-        .args(["-c", "import roslibpy"])
-        .stderr(Stdio::null())
-        .status()
-        .is_ok_and(|status| status.success());
-    if !found {
-        let wanted = "python3 with roslibpy (pip install it)";
-        assert!(std::env::var_os("CI").is_none(), "CI needs {wanted}");
-        let _ = writeln!(io::stdout(), "SKIPPED: no stock controller; it needs {wanted}");
-        return;
-    }
-    let setup = setup("straight-25m", "");
-    let once = || {
-        let (drive, mut python) = drive(&setup, |address| {
-            let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../gateway/examples/controller.py");
-            let port = address.port().to_string();
-            Command::new("python3").args([script, "--port", &port]).spawn().unwrap()
-        })
-        .unwrap();
-        assert!(python.wait().unwrap().success());
-        let report = drive.recording.report(&setup, "virtual");
-        assert!(report.passed(), "{}", report.table());
-        assert_eq!((drive.driven().outcome.as_str(), drive.told.len()), ("reached", 1));
-        drive.recording.log_sha256
-    };
-    assert_eq!(once(), once());
-}
 
 #[test]
 fn a_controller_that_falls_silent_stops_the_machine() {

@@ -158,7 +158,7 @@ fn found_bias(signals: Signals, from_s: f64) -> (f64, f64) {
     let onset = Onset::in_every_run(from_s);
     let fit = hypothesis.refit(&evidence, onset, &[-1.0e5]);
     let effects = hypothesis.applied(&Effects::default(), &fit.values);
-    let left = evidence.left(Belief { effects: &effects, onset });
+    let left = evidence.left(Belief { onset, ..(&effects).into() });
     (fit.values[0], left[0].square.sqrt())
 }
 

@@ -72,15 +72,14 @@ impl Candidate {
         Some([held, self.held_most])
     }
 
-    /// Whether a `second` beside it would be more of the same from a later instant of every run on: both set
-    /// in late, in one block and on some wheel of both. What grows by steps is no two causes, but one that
-    /// changes as a run goes on, and is in no catalogue.
-    pub(super) fn goes_on_as(&self, second: &Self) -> bool {
+    /// Whether it and a `second` beside it would be one cause that changes as a run goes on, which is in no catalogue:
+    /// both set in late, each at another instant, in one block and on some wheel of both.
+    pub(super) fn is_one_with(&self, second: &Self) -> bool {
         let (own, other) = (&self.fit, &second.fit);
         let is_on_both = |w| own.hypothesis.scope.contains(w) && other.hypothesis.scope.contains(w);
         own.onset.is_late()
+            && other.onset.is_late()
             && other.onset != own.onset
-            && own.onset.is_by(other.onset)
             && own.hypothesis.effect.block == other.hypothesis.effect.block
             && Wheel::ALL.into_iter().any(is_on_both)
     }
@@ -133,17 +132,19 @@ mod tests {
             late
         };
         let gain = from("valve-gain", Scope::All, 16.8);
-        assert!(gain.goes_on_as(&from("speed-asymmetry", Scope::Axle(Axle::Rear), 24.1)));
+        for at_s in [8.1, 24.1] {
+            assert!(gain.is_one_with(&from("speed-asymmetry", Scope::Axle(Axle::Rear), at_s)));
+        }
         let other = [
             from("speed-asymmetry", Scope::All, 0.0),
             from("speed-asymmetry", Scope::All, 16.8),
             from("steer-lag", Scope::All, 24.1),
         ];
-        assert!(other.iter().all(|second| !gain.goes_on_as(second)));
+        assert!(other.iter().all(|second| !gain.is_one_with(second)));
         let [left, right] = [Side::Left, Side::Right].map(Scope::Side);
         let [left, right] = [from("valve-gain", left, 8.0), from("valve-lag", right, 12.0)];
-        assert!(!left.goes_on_as(&right));
+        assert!(!left.is_one_with(&right));
         let always = from("valve-gain", Scope::All, 0.0);
-        assert!(!always.goes_on_as(&from("speed-asymmetry", Scope::All, 24.1)));
+        assert!(!always.is_one_with(&from("speed-asymmetry", Scope::All, 24.1)));
     }
 }

@@ -7,7 +7,7 @@ use xt28_machine::{Machine, Wheel};
 use xt28_sim::Effects;
 use xt28_sim::effects::Effect;
 
-use super::belief::{Base, Belief};
+use super::belief::{Base, Belief, Supposed};
 use super::candidate::Candidate;
 use super::evidence::{Echo, Evidence, Left, Uneven};
 use super::hypothesis::{Fit, Hypothesis};
@@ -65,8 +65,8 @@ impl<'a> Docket<'a> {
         all
     }
 
-    /// Puts `known` among `all` as it is worth here from its own beginning on, where nothing better was found of it: one
-    /// that begins out of sight, and sums up or remembers, is not what always was there.
+    /// Puts `known` among `all` as it is worth here from its own beginning on, where nothing better was found of it:
+    /// instants that are asked lie seconds apart, and what sums up or remembers is another from each.
     pub(super) fn keep(&self, all: &mut Vec<Candidate>, known: &Fit) {
         let Fit { hypothesis, onset, ref values, .. } = *known;
         let kept = self.weighed(hypothesis.refit(&self.fit, onset, values));
@@ -83,16 +83,15 @@ impl<'a> Docket<'a> {
 
     /// What it costs to believe `fits`, tolerances at their best.
     pub(super) fn paid(&self, fits: &[&Fit]) -> Paid {
-        let (effects, onset) = self.believing(fits);
-        let (left, shifts) = self.fit.left_and_shifts(Belief { effects: &effects, onset });
+        let (believed, onset) = self.believing(fits);
+        let (left, shifts) = self.fit.left_and_shifts(believed.from(onset));
         Paid { left, shifts }
     }
 
     /// What each signal of the runs held out leaves, tolerances at their best there; nothing without any.
     pub(super) fn left_held(&self, fits: &[&Fit]) -> Vec<Left> {
-        let (effects, onset) = self.believing(fits);
-        let held = self.held.as_ref();
-        held.map_or(Vec::new(), |held| held.left(Belief { effects: &effects, onset }))
+        let (believed, onset) = self.believing(fits);
+        self.held.as_ref().map_or(Vec::new(), |held| held.left(believed.from(onset)))
     }
 
     /// What each signal of the runs held out leaves with tolerances where they are believed to be.
@@ -102,16 +101,15 @@ impl<'a> Docket<'a> {
 
     /// Where the tolerances go in the runs held out once `fits` are believed, each by how many of its own.
     pub(super) fn shifts_held(&self, fits: &[&Fit]) -> Vec<(Knob, f64)> {
-        let (effects, onset) = self.believing(fits);
-        let held = self.held.as_ref();
-        held.map_or(Vec::new(), |held| held.shifts(Belief { effects: &effects, onset }))
+        let (believed, onset) = self.believing(fits);
+        self.held.as_ref().map_or(Vec::new(), |held| held.shifts(believed.from(onset)))
     }
 
     /// How much of what is left there is what `fits` and the base explain of what `nothing` leaves, moved
     /// in time; and whether, in all runs, that is another share of it in one half than in the other.
     pub(super) fn again(&self, fits: &[&Fit], nothing: &Effects) -> (Vec<Echo>, Vec<Uneven>) {
-        let (effects, onset) = self.believing(fits);
-        let belief = Belief { effects: &effects, onset };
+        let (believed, onset) = self.believing(fits);
+        let belief = believed.from(onset);
         let (echoes, mut unevens) = self.fit.again(belief, nothing);
         let held = self.held.as_ref().map_or(Vec::new(), |held| held.again(belief, nothing).1);
         for uneven in held {
@@ -126,7 +124,8 @@ impl<'a> Docket<'a> {
     /// What each signal leaves that is for `fits` to explain, no tolerance further than `most` of its own.
     pub(super) fn apart(&self, fits: &[&Fit], most: f64) -> Vec<Left> {
         let in_turn = self.in_turn(fits);
-        let beliefs = in_turn.iter().map(|(effects, onset)| Belief { effects, onset: *onset });
+        let beliefs = in_turn.iter();
+        let beliefs = beliefs.map(|(effects, onset)| Belief { onset: *onset, ..effects.into() });
         self.fit.apart(&beliefs.collect::<Vec<_>>(), most)
     }
 
@@ -148,12 +147,13 @@ impl<'a> Docket<'a> {
         beliefs.collect()
     }
 
-    fn believing(&self, fits: &[&Fit]) -> (Effects, Onset) {
-        let mut effects = self.fit.base().clone();
-        for fit in fits {
-            effects = fit.hypothesis.applied(&effects, &fit.values);
-        }
-        (effects, fits.iter().map(|fit| fit.onset).fold(Onset::ALWAYS, Onset::later))
+    fn believing(&self, fits: &[&Fit]) -> (Supposed, Onset) {
+        let with_all = |base: &Effects| {
+            let with = |effects, fit: &&Fit| fit.hypothesis.applied(&effects, &fit.values);
+            fits.iter().fold(base.clone(), with)
+        };
+        let onset = fits.iter().map(|fit| fit.onset).fold(Onset::ALWAYS, Onset::later);
+        (self.fit.with(with_all), onset)
     }
 
     /// The effect of the best one at other scopes, from its own values: on more wheels, as of six that were looked
@@ -241,7 +241,6 @@ mod tests {
 
     use super::*;
     use crate::diagnosis::generator::Generator;
-    use crate::diagnosis::generator::still::still;
     use crate::{Channel, Series, Terrain};
 
     /// A machine that drives for 20 s, is told to bend to and fro, and does not.
@@ -257,41 +256,6 @@ mod tests {
         };
         let all = Channel::all().into_iter().map(|channel| (channel, reads(channel)));
         Signals::of_series("made up", &all.collect(), 20.0, Terrain::Flat).unwrap()
-    }
-
-    /// A machine that goes east at 1.5 m/s, and from `at_s` on tells fixes by `ahead_m` and `left_m` further.
-    fn mast_is_bent(at_s: f64, [ahead_m, left_m]: [f64; 2]) -> Signals {
-        let mut s = still(30);
-        (s.fixes, s.headings) = (Vec::new(), Vec::new());
-        let radius_m = Machine::xt28().wheels.radius_m;
-        for w in Wheel::ALL {
-            s.cylinder_load_n[w].fill(60.0e3);
-            s.wheel_speed_rad_s[w].fill(1.5 / radius_m);
-            s.smooth_wheel_speed_rad_s[w].fill(1.5 / radius_m);
-        }
-        for k in 0..240 {
-            let fix_s = 0.125 * f64::from(k);
-            let by = f64::from(u8::from(fix_s >= at_s));
-            s.fixes.push([fix_s, 1.5 * fix_s + by * ahead_m, by * left_m]);
-            s.headings.push([fix_s, 0.0, 0.0]);
-        }
-        s
-    }
-
-    #[test]
-    fn fixes_that_jump_tell_when() {
-        // Midway between two instants of those that are asked otherwise, further from each than fixes are compared over.
-        let runs = [mast_is_bent(9.0, [0.4, 0.3])];
-        let generators = vec![Generator::Travel];
-        let (machine, nothing) = (Machine::xt28(), Effects::default());
-        let fit = Evidence::watching(generators, &runs, &machine, nothing, &Knob::all());
-        let docket = Docket { fit, held: None };
-        let mut always = Candidate::made_up("gnss-lever-arm", Scope::All, 1.0);
-        always.fit.values = vec![0.2, 0.1];
-        let found = docket.set_in(&always).expect("a jump of half a metre");
-        assert!((found.fit.onset.at_s() - 9.0).abs() < 0.13, "{:?}", found.fit.onset);
-        let each = found.fit.values.iter().zip([0.4, 0.3]);
-        each.for_each(|(is, was)| assert!((is - was).abs() < 0.05, "{:?}", found.fit.values));
     }
 
     #[test]
@@ -313,6 +277,34 @@ mod tests {
         let mut all = vec![better];
         docket.keep(&mut all, &known);
         assert_eq!((all.len(), all[0].fit.onset), (1, Onset::ALWAYS));
+    }
+
+    #[test]
+    fn what_was_before_a_base_tells_of_what_is_beside_it() {
+        let (runs, knobs, machine) = ([bends()], Knob::all(), Machine::xt28());
+        let gain = |base: Base| {
+            let generators = vec![Generator::SteerEcu(0)];
+            let evidence = Evidence::watching(generators, &runs, &machine, base, &knobs);
+            let weak = Candidate::made_up("steer-gain", Scope::All, 90.0).fit;
+            weak.hypothesis.gain(&evidence, Onset::in_every_run(4.0), &[0.3])
+        };
+        let mut base = Base::from(Effects::default());
+        let alone = gain(base.clone());
+        assert!(alone > 10.0, "{alone}");
+        base.effects.arms[Wheel::Fl].delay.delay_s = 0.2;
+        // Late in the run, after its end, and as if it always had been there: it is of an arm.
+        for since_s in [18.0, 30.0, 0.0] {
+            base.since = Onset::in_every_run(since_s);
+            let beside = gain(base.clone());
+            assert!((beside - alone).abs() < 1e-9 * alone, "{since_s}: {beside} {alone}");
+        }
+        // A base that is the same from the middle of the run on leaves what was before it to be explained.
+        base = Base::from(Effects::default());
+        let gain_of = Candidate::made_up("steer-gain", Scope::All, 90.0).fit.hypothesis;
+        base.effects = gain_of.applied(&base.effects, &[0.3]);
+        base.since = Onset::in_every_run(12.0);
+        let rest = gain(base);
+        assert!((12.0..0.9 * alone).contains(&rest), "{rest} {alone}");
     }
 
     #[test]

@@ -83,18 +83,17 @@ impl Inquiry {
             return Findings { signals, shifts, held_out, ..Findings::default() };
         }
         tell("trying second causes", 0.4);
-        let Pairs { pair, firsts, beside } = self.second(&docket, &single, &shown);
+        let Pairs { pair, firsts, beside } = self.second((&first, &docket), &single, &shown);
         tell("looking at what is left", 0.7);
-        let (pair, paid) = owned(pair, &first, &beside);
         // They were sought beside one second, and say nothing beside another.
         let is_beside = |second: &Effect| {
             pair.first().is_some_and(|[_, best]| best.fit.hypothesis.effect == second)
         };
         let firsts = firsts.filter(|(second, _)| is_beside(second)).map_or(Vec::new(), |(_, f)| f);
-        let look = |believed: &[&Candidate], court: &Docket, paid: Option<Paid>| {
+        let look = |believed: &[&Candidate], court: &Docket| {
             let fits: Vec<&Fit> = believed.iter().map(|candidate| &candidate.fit).collect();
             let last = fits[fits.len() - 1];
-            let Paid { left: after, shifts } = paid.unwrap_or_else(|| court.paid(&[last]));
+            let Paid { left: after, shifts } = court.paid(&[last]);
             let (echoes, unevens) = court.again(&[last], &self.believed);
             let held_out = first.held_out(court, &[last]);
             let apart = first.apart(&fits, SHIFT_MAX);
@@ -103,10 +102,10 @@ impl Inquiry {
         };
         match pair.first() {
             Some([one, second]) => {
-                let looked = look(&[one, second], &beside, paid);
+                let looked = look(&[one, second], &beside);
                 Findings { single, pair, firsts, ..looked }
             }
-            None => at_likely_wheels(single, &|alone| look(&[alone], &first, None)),
+            None => at_likely_wheels(single, &|alone| look(&[alone], &first)),
         }
     }
 
@@ -116,27 +115,26 @@ impl Inquiry {
     /// the likely ones, for it was found while the second still disturbed.
     fn second<'a>(
         &self,
-        docket: &dyn Fn(&Base) -> Docket<'a>,
+        (alone, docket): (&Docket<'a>, &dyn Fn(&Base) -> Docket<'a>),
         single: &[Candidate],
         shown: &Shown,
     ) -> Pairs<'a> {
         let beside = |one: &Candidate| {
             let effects = one.fit.hypothesis.applied(&self.believed, &one.fit.values);
-            docket(&Base { effects, since: one.fit.onset })
+            docket(&Base { effects, since: one.fit.onset, before: self.believed.clone() })
         };
         let others = |one: &Candidate, among: &[&'static Effect]| -> Vec<&'static Effect> {
             among.iter().copied().filter(|effect| *effect != one.fit.hypothesis.effect).collect()
         };
         let seconds_of = |court: &Docket, first: &Candidate, among: &[&'static Effect]| {
             let mut seconds = tested(court.candidates(among), shown);
-            seconds.retain(|second| !first.goes_on_as(second));
-            seconds
+            seconds.retain(|second| !first.is_one_with(second));
+            owned(seconds, &first.fit, [alone, court])
         };
         let mut first = single[0].clone();
         let mut court = beside(&first);
         let mut seconds = seconds_of(&court, &first, &others(&first, &self.catalogue));
-        let Some(second) = seconds.first().filter(|second| second.score() > SECOND_MIN).cloned()
-        else {
+        let Some(second) = seconds.first().cloned() else {
             return Pairs { pair: Vec::new(), firsts: None, beside: court };
         };
         let mut likely: Vec<&'static Effect> = Vec::new();
@@ -152,17 +150,15 @@ impl Inquiry {
         }
         let again = tested(again, shown);
         if let Some(better) = again.first().filter(|better| better.score() > SECOND_MIN) {
-            let mut better = better.clone();
-            better.fit.onset = better.fit.onset.or_as_alone(first.fit.onset, second.fit.onset);
             // Its second was found, and is judged, beside the one that is told: one that stays within what
             // is known of it is left as it was.
             if better.fit.parts_from(&first.fit) {
-                first = better;
+                first = better.clone();
                 court = beside(&first);
                 seconds = seconds_of(&court, &first, &[second.fit.hypothesis.effect]);
             }
         }
-        let pairs = seconds.into_iter().take(LISTED).map(|second| [first.clone(), second]);
+        let pairs = seconds.into_iter().map(|second| [first.clone(), second]);
         let firsts = Some((second.fit.hypothesis.effect, again));
         Pairs { pair: pairs.collect(), firsts, beside: court }
     }
@@ -198,27 +194,26 @@ fn tested(mut candidates: Vec<Candidate>, shown: &Shown) -> Vec<Candidate> {
     candidates
 }
 
-/// Pairs by what their seconds explain of their own, and what is paid for the best of them. All have one
-/// first, found by `first`; their seconds were found `beside` it.
+/// Those of `seconds` that are worth telling, by what they explain of their own. Their `first` was found `alone`, and
+/// they were found `beside` it.
 fn owned(
-    pairs: Vec<[Candidate; 2]>,
-    first: &Docket,
-    beside: &Docket,
-) -> (Vec<[Candidate; 2]>, Option<Paid>) {
-    let Some([one, _]) = pairs.first() else { return (pairs, None) };
-    let (none, explained) = (first.paid(&[]), first.paid(&[&one.fit]));
-    let alone = beside.paid(&[]);
-    let weigh = |[one, mut second]: [Candidate; 2]| {
-        let both = beside.paid(&[&second.fit]);
-        second.own_share = own_share([&none, &explained], [&alone, &both]);
-        ([one, second], both)
-    };
-    let mut all: Vec<_> = pairs.into_iter().map(weigh).collect();
-    all.retain(|([_, second], _)| second.score() > SECOND_MIN);
-    all.sort_by(|([_, a], _), ([_, b], _)| b.score().total_cmp(&a.score()));
-    let (pairs, mut paid): (Vec<_>, Vec<_>) = all.into_iter().unzip();
-    let best = (!paid.is_empty()).then(|| paid.swap_remove(0));
-    (pairs, best)
+    mut seconds: Vec<Candidate>,
+    first: &Fit,
+    [alone, beside]: [&Docket; 2],
+) -> Vec<Candidate> {
+    seconds.retain(|second| second.score() > SECOND_MIN);
+    seconds.truncate(LISTED);
+    if seconds.is_empty() {
+        return seconds;
+    }
+    let by_first = [&alone.paid(&[]), &alone.paid(&[first])];
+    let nothing = beside.paid(&[]);
+    for second in &mut seconds {
+        second.own_share = own_share(by_first, [&nothing, &beside.paid(&[&second.fit])]);
+    }
+    seconds.retain(|second| second.score() > SECOND_MIN);
+    seconds.sort_by(|a, b| b.score().total_cmp(&a.score()));
+    seconds
 }
 
 #[cfg(test)]

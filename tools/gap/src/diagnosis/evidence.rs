@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
 
-use super::belief::{Base, Belief};
+use super::belief::{Base, Belief, Supposed};
 use super::generator::Generator;
 use super::knob::Knob;
 use super::onset::Onset;
@@ -105,7 +105,7 @@ impl<'a> Evidence<'a> {
         for _ in 0..ROUNDS {
             evidence.settle();
         }
-        evidence.base_cost = evidence.cost(&evidence.base.effects, &|_| false);
+        evidence.base_cost = evidence.cost(evidence.base.belief(), &|_| false);
         evidence
     }
 
@@ -135,11 +135,16 @@ impl<'a> Evidence<'a> {
         0.5 * self.cost_of(&sums)
     }
 
-    /// What it costs to believe `effects` from each of `onsets` on; what generators of
+    /// What is believed beside the tolerances, with `change` made to it.
+    pub(super) fn with(&self, change: impl Fn(&Effects) -> Effects) -> Supposed {
+        self.base.with(change)
+    }
+
+    /// What it costs to believe what is `supposed` from each of `onsets` on; what generators of
     /// one wheel say of `values` there is remembered.
     pub(super) fn costs_remembered(
         &self,
-        effects: &Effects,
+        supposed: &Supposed,
         only: &dyn Fn(Generator) -> bool,
         onsets: &[Onset],
         (values, memory): (&[f64], &mut Memory),
@@ -149,7 +154,7 @@ impl<'a> Evidence<'a> {
             if !only(generator) {
                 return vec![watch.sums.clone(); onsets.len()];
             }
-            let again = || watch.onsets(self.runs, &self.machine, effects, onsets, false);
+            let again = || watch.onsets(self.runs, &self.machine, supposed, onsets, false);
             if generator.wheel().is_none() {
                 return again();
             }
@@ -161,10 +166,10 @@ impl<'a> Evidence<'a> {
         (0..onsets.len()).map(|k| self.cost_of(&at(k))).collect()
     }
 
-    /// What it costs to believe `effects` from each of `onsets` on, fixes jumping there.
+    /// What it costs to believe what is `supposed` from each of `onsets` on, fixes jumping there.
     pub(super) fn onset_costs(
         &self,
-        effects: &Effects,
+        supposed: &Supposed,
         only: &dyn Fn(Generator) -> bool,
         onsets: &[Onset],
     ) -> Vec<f64> {
@@ -173,7 +178,7 @@ impl<'a> Evidence<'a> {
             .iter()
             .map(|watch| {
                 if only(watch.stack.generator) {
-                    let all = watch.onsets(self.runs, &self.machine, effects, onsets, true);
+                    let all = watch.onsets(self.runs, &self.machine, supposed, onsets, true);
                     all.into_iter().map(Cow::Owned).collect()
                 } else {
                     onsets.iter().map(|_| Cow::Borrowed(&watch.sums)).collect()
@@ -247,7 +252,7 @@ impl<'a> Evidence<'a> {
     /// What the base leaves on each signal, tolerances where they are believed to be.
     #[must_use]
     pub fn unbent(&self) -> Vec<Left> {
-        let sums = self.sums((&self.base.effects).into(), &|_| false);
+        let sums = self.sums(self.base.belief(), &|_| false);
         let bumps = self.watches.iter().flat_map(|watch| watch.bumps(&watch.stack.values));
         with_bumps(self.left_at(&sums, &DVector::zeros(self.knobs.len())), bumps)
     }
@@ -262,7 +267,7 @@ impl<'a> Evidence<'a> {
         };
         let step = self.step(&self.watches.iter().map(sums).collect::<Vec<_>>());
         let step = step.map(|by| by.clamp(-most, most));
-        let sums = self.sums((&self.base.effects).into(), &|_| false);
+        let sums = self.sums(self.base.belief(), &|_| false);
         self.left_at(&sums, &step)
     }
 
@@ -281,7 +286,7 @@ impl<'a> Evidence<'a> {
     /// floors; `None` where nothing was measured that it could be told by.
     #[must_use]
     pub fn gaps(&self) -> Vec<(Generator, Option<f64>)> {
-        let left = self.left(&self.base.effects);
+        let left = self.left(self.base.belief());
         let gap = |watch: &Watch| {
             let own = left.iter().filter(|left| left.generator == watch.stack.generator);
             let (squares, samples) = own.fold((0.0, 0.0_f64), |(squares, samples), left| {

@@ -7,7 +7,7 @@ mod spread;
 use xt28_sim::Effects;
 use xt28_sim::effects::{CATALOGUE, Effect, Parameter, Scope};
 
-use super::belief::Belief;
+use super::belief::Supposed;
 use super::evidence::Evidence;
 use super::generator::Generator;
 use super::onset::Onset;
@@ -102,6 +102,11 @@ impl Hypothesis {
         effects
     }
 
+    /// What `evidence` takes for granted with this effect's parameters at `values`.
+    pub(super) fn supposed(&self, evidence: &Evidence<'_>, values: &[f64]) -> Supposed {
+        evidence.with(|base| self.applied(base, values))
+    }
+
     /// Its best values, sought from `values`, the effect there from `onset` on.
     #[must_use]
     pub fn refit(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> Fit {
@@ -138,16 +143,14 @@ impl Hypothesis {
     /// How much better `evidence` is explained with `values`: half the cost that goes.
     #[must_use]
     pub fn gain(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
-        let effects = self.applied(evidence.base(), values);
-        let belief = Belief { effects: &effects, onset };
-        0.5 * (evidence.base_cost() - evidence.cost(belief, &self.heard()))
+        let belief = self.supposed(evidence, values);
+        0.5 * (evidence.base_cost() - evidence.cost(belief.from(onset), &self.heard()))
     }
 
     /// What that could be at most: if the machine were just so.
     #[must_use]
     pub(super) fn most(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
-        let effects = self.applied(evidence.base(), values);
-        evidence.most(Belief { effects: &effects, onset }, &self.heard())
+        evidence.most(self.supposed(evidence, values).from(onset), &self.heard())
     }
 
     /// The same for an effect that sets in at each of `onsets`.
@@ -157,8 +160,8 @@ impl Hypothesis {
         onsets: &[Onset],
         values: &[f64],
     ) -> Vec<f64> {
-        let effects = self.applied(evidence.base(), values);
-        let costs = evidence.onset_costs(&effects, &self.heard(), onsets);
+        let supposed = self.supposed(evidence, values);
+        let costs = evidence.onset_costs(&supposed, &self.heard(), onsets);
         costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost)).collect()
     }
 
@@ -181,8 +184,8 @@ impl Hypothesis {
 
     /// What is left and what one has to believe for it.
     fn cost(&self, evidence: &Evidence<'_>, onset: Onset, values: &[f64]) -> f64 {
-        let effects = self.applied(evidence.base(), values);
-        evidence.cost(Belief { effects: &effects, onset }, &self.heard()) + self.disbelief(values)
+        let belief = self.supposed(evidence, values);
+        evidence.cost(belief.from(onset), &self.heard()) + self.disbelief(values)
     }
 
     fn weighed(&self, evidence: &Evidence<'_>, onset: Onset, values: Vec<f64>, cost: f64) -> Fit {

@@ -70,19 +70,6 @@ impl Onset {
         }
     }
 
-    /// Whether it is after `other` in no run.
-    #[must_use]
-    pub(super) fn is_by(self, other: Self) -> bool {
-        self.later(other) == other
-    }
-
-    /// When one begins that was sought anew where nothing before `other` was looked at, and there begins at `self`: as it
-    /// did `alone`, where all it does before that is out of sight.
-    #[must_use]
-    pub(super) fn or_as_alone(self, alone: Self, other: Self) -> Self {
-        if self.is_by(other) && alone.is_by(other) { alone } else { self }
-    }
-
     /// Another of its kind, `by_s` s later, but not before the start.
     #[must_use]
     pub fn moved(self, by_s: f64) -> Self {
@@ -178,18 +165,6 @@ mod tests {
         assert!(both.is_late() && !Onset::ALWAYS.is_late());
         assert_eq!(once.moved(-1.5), Onset::once(43.5));
         assert_eq!(each.moved(-9.0), Onset::ALWAYS);
-    }
-
-    #[test]
-    fn what_begins_out_of_sight_begins_as_it_did_alone() {
-        let [early, late] = [8.0, 12.0].map(Onset::in_every_run);
-        // Beside one from 12 s on, whatever begins by then seems always to have been there.
-        assert_eq!(Onset::ALWAYS.or_as_alone(early, late), early);
-        assert_eq!(Onset::ALWAYS.or_as_alone(Onset::ALWAYS, late), Onset::ALWAYS);
-        // Beside one from 8 s on, a beginning at 12 s is seen, and so is none.
-        assert_eq!(late.or_as_alone(early, early), late);
-        assert_eq!(Onset::ALWAYS.or_as_alone(late, early), Onset::ALWAYS);
-        assert_eq!(Onset::ALWAYS.or_as_alone(late, Onset::ALWAYS), Onset::ALWAYS);
     }
 
     #[test]

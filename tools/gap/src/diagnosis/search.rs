@@ -127,10 +127,10 @@ fn first_look(evidence: &Evidence<'_>, effect: &'static Effect) -> Vec<Start> {
     let mut starts = Vec::new();
     for hypothesis in Hypothesis::of(&[effect]) {
         for values in grid(effect.parameters) {
-            let effects = hypothesis.applied(evidence.base(), &values);
+            let supposed = hypothesis.supposed(evidence, &values);
             let only = |generator: Generator| generator.hears(effect, hypothesis.scope);
             let remembered = (&values[..], &mut memory);
-            let costs = evidence.costs_remembered(&effects, &only, &onsets, remembered);
+            let costs = evidence.costs_remembered(&supposed, &only, &onsets, remembered);
             let gains = costs.into_iter().map(|cost| 0.5 * (evidence.base_cost() - cost));
             if let Some((onset, gain)) = best_onset(&onsets, gains) {
                 starts.push(Start { hypothesis, values, onset, gain });

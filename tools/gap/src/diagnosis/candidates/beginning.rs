@@ -52,12 +52,19 @@ impl Docket<'_> {
         let whole = hypothesis.gain(&self.fit, onset, values);
         let [every_run, on_the_day] = self.onsets(hypothesis.effect);
         let (each, once) = (best(&every_run)?, best(&on_the_day));
-        let other = each.0.max(whole);
-        let least = if onset.is_once() { each.0 } else { other + once_least(other) };
-        let once = once.filter(|once| once.0 > least);
+        // Where one of the runs fitted alone shows it, it may as well come in every run: those held out tell.
+        let told = |(gain, at): (f64, Onset)| {
+            gain + self.held.as_ref().map_or(0.0, |held| hypothesis.gain(held, at, values))
+        };
+        let once = once.filter(|once| {
+            let [each, other] = [told(each), told(each).max(told((whole, onset)))];
+            told(*once) > if onset.is_once() { each } else { other + once_least(other) }
+        });
         let (gain, at) = once.unwrap_or(each);
-        let is_asked =
-            onset.is_late() || moves_fixes(hypothesis.effect) || gain >= whole + BEGINNING_HINT;
+        let is_asked = onset.is_late()
+            || at.is_once()
+            || moves_fixes(hypothesis.effect)
+            || gain >= whole + BEGINNING_HINT;
         if !is_asked {
             return None;
         }
@@ -70,7 +77,9 @@ impl Docket<'_> {
         }
         let better = if late.score() > found.score() { &late } else { found };
         if better.fit.onset.is_once() {
-            return Some(self.once_or_always(better.clone()));
+            // What sets in during a run held out is nowhere where the first run fitted after it begins.
+            let begun = self.begun_for_all(better);
+            return Some(self.once_or_always(begun.unwrap_or_else(|| better.clone())));
         }
         let least = if onset.is_late() { 0.0 } else { BEGINNING_MIN };
         (late.score() > found.score() + least).then_some(late)
@@ -200,9 +209,78 @@ pub(super) fn is_there(fit: &Fit) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::{Machine, Wheel};
+    use xt28_sim::Effects;
     use xt28_sim::effects::Scope;
 
     use super::*;
+    use crate::diagnosis::generator::Generator;
+    use crate::diagnosis::generator::still::still;
+    use crate::diagnosis::knob::Knob;
+    use crate::diagnosis::signals::Signals;
+
+    /// A machine that goes east at 1.5 m/s, and from `at_s` on tells fixes by `ahead_m` and `left_m` further.
+    fn mast_is_bent(at_s: f64, [ahead_m, left_m]: [f64; 2]) -> Signals {
+        let mut s = still(30);
+        (s.fixes, s.headings) = (Vec::new(), Vec::new());
+        let radius_m = Machine::xt28().wheels.radius_m;
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(60.0e3);
+            s.wheel_speed_rad_s[w].fill(1.5 / radius_m);
+            s.smooth_wheel_speed_rad_s[w].fill(1.5 / radius_m);
+        }
+        for k in 0..240 {
+            let fix_s = 0.125 * f64::from(k);
+            let by = f64::from(u8::from(fix_s >= at_s));
+            s.fixes.push([fix_s, 1.5 * fix_s + by * ahead_m, by * left_m]);
+            s.headings.push([fix_s, 0.0, 0.0]);
+        }
+        s
+    }
+
+    #[test]
+    fn fixes_that_jump_tell_when() {
+        // Midway between two instants of those that are asked otherwise, further from each than fixes are compared over.
+        let runs = [mast_is_bent(9.0, [0.4, 0.3])];
+        let generators = vec![Generator::Travel];
+        let (machine, nothing) = (Machine::xt28(), Effects::default());
+        let fit = Evidence::watching(generators, &runs, &machine, nothing, &Knob::all());
+        let docket = Docket { fit, held: None };
+        let mut always = Candidate::made_up("gnss-lever-arm", Scope::All, 1.0);
+        always.fit.values = vec![0.2, 0.1];
+        let found = docket.set_in(&always).expect("a jump of half a metre");
+        assert!((found.fit.onset.at_s() - 9.0).abs() < 0.13, "{:?}", found.fit.onset);
+        let each = found.fit.values.iter().zip([0.4, 0.3]);
+        each.for_each(|(is, was)| assert!((is - was).abs() < 0.05, "{:?}", found.fit.values));
+    }
+
+    #[test]
+    fn runs_held_out_tell_what_comes_in_every_run_from_what_comes_once() {
+        // Of the runs fitted one alone has fixes, and in it the mast is bent.
+        let mut silent = mast_is_bent(99.0, [0.0; 2]);
+        (silent.fixes, silent.headings) = (Vec::new(), Vec::new());
+        let bent = |at_s, began_s| {
+            let mut run = mast_is_bent(at_s, [0.4, 0.3]);
+            run.began_s = began_s;
+            run
+        };
+        let fitted = [silent, bent(9.0, 30.0)];
+        let (machine, knobs) = (Machine::xt28(), Knob::all());
+        let onset = |bends_s: f64| {
+            let held = [bent(bends_s, 60.0)];
+            let [fit, held] = [&fitted[..], &held].map(|runs| {
+                let generators = vec![Generator::Travel];
+                Evidence::watching(generators, runs, &machine, Effects::default(), &knobs)
+            });
+            let docket = Docket { fit, held: Some(held) };
+            let mut always = Candidate::made_up("gnss-lever-arm", Scope::All, 1.0);
+            always.fit.values = vec![0.4, 0.3];
+            docket.set_in(&always).expect("a jump of half a metre").fit.onset
+        };
+        let [again, once] = [onset(9.0), onset(99.0)];
+        assert!(!again.is_once() && (again.at_s() - 9.0).abs() < 0.13, "{again:?}");
+        assert!(once.is_once() && (once.at_s() - 39.0).abs() < 0.13, "{once:?}");
+    }
 
     #[test]
     fn an_effect_that_sets_in_late_has_to_do_something() {

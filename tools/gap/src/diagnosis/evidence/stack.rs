@@ -7,7 +7,7 @@ use xt28_sim::Effects;
 
 use crate::diagnosis::belief::{Base, Belief, EffectSchedule};
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::generator::{Generator, STEP_S};
+use crate::diagnosis::generator::{Generator, Residual, STEP_S};
 use crate::diagnosis::onset::Onset;
 use crate::diagnosis::signals::Signals;
 
@@ -45,7 +45,7 @@ pub(super) struct Stack {
 }
 
 impl Stack {
-    /// Residuals of `generator` on `runs`, each from where `base` set in.
+    /// Residuals of `generator` on `runs` under `base`.
     #[allow(clippy::cast_precision_loss)]
     pub(super) fn new(
         generator: Generator,
@@ -66,15 +66,14 @@ impl Stack {
             mask: Vec::new(),
         };
         for (number, run) in runs.iter().enumerate() {
-            let since_s = base.since.in_run(run.began_s);
-            let schedule = EffectSchedule { since_s, ..(&base.effects).into() };
-            for residual in generator.residuals_over(run, machine, schedule) {
+            let schedule = base.schedule(base.belief(), run.began_s);
+            for residual in residuals(generator, run, machine, schedule) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
                     let at_s = i as f64 * STEP_S;
                     let read_at_s = generator.read_at_s(residual.signal, at_s);
-                    let counts = value.is_finite() && read_at_s >= since_s;
+                    let counts = value.is_finite();
                     stack.mask.push(counts);
                     if counts {
                         stack.values.push(value * weight.sqrt());
@@ -107,14 +106,13 @@ impl Stack {
         runs: &[Signals],
         machine: &Machine,
         before: &Effects,
-        Belief { effects, onset }: Belief<'_>,
+        belief: Belief<'_>,
     ) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
         for run in runs {
-            let [from_s, since_s] = [onset, self.base.since].map(|at| at.in_run(run.began_s));
-            let schedule = EffectSchedule { before, from_s, effects, since_s };
-            for residual in self.generator.residuals_over(run, machine, schedule) {
+            let schedule = self.base.schedule(belief, run.began_s).taking_over(before);
+            for residual in residuals(self.generator, run, machine, schedule) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {
@@ -133,8 +131,8 @@ impl Stack {
     }
 
     /// What they were made with.
-    pub(super) const fn base_effects(&self) -> &Effects {
-        &self.base.effects
+    pub(super) const fn base(&self) -> &Base {
+        &self.base
     }
 
     /// Whether `effects` give the valve that it watches another play.
@@ -180,4 +178,25 @@ impl Stack {
             self.groups.len() - 1
         })
     }
+}
+
+/// Residuals of `generator` on a run: what was read before the base set in is told as if it never did, as a block that
+/// remembers would have the base's law all along.
+fn residuals(
+    generator: Generator,
+    run: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+) -> Vec<Residual> {
+    let mut all = generator.residuals_over(run, machine, schedule);
+    let since_s = schedule.since_s();
+    if since_s > 0.0 {
+        let before = generator.residuals_over(run, machine, schedule.without_base());
+        for (residual, before) in all.iter_mut().zip(before) {
+            let read_at_s = |i: usize| generator.read_at_s(residual.signal, i as f64 * STEP_S);
+            let until = (0..before.values.len()).take_while(|i| read_at_s(*i) < since_s).count();
+            residual.values[..until].copy_from_slice(&before.values[..until]);
+        }
+    }
+    all
 }

@@ -11,7 +11,7 @@ use super::bumps::Bumps;
 use super::echo::{Echo, Filter};
 use super::halves::{Half, Scene, Uneven};
 use super::stack::{Group, Stack};
-use crate::diagnosis::belief::{Base, Belief};
+use crate::diagnosis::belief::{Base, Belief, Supposed};
 use crate::diagnosis::generator::{Generator, STEP_S};
 use crate::diagnosis::knob::Knob;
 use crate::diagnosis::onset::Onset;
@@ -94,20 +94,14 @@ impl Watch {
         knobs: &[Knob],
     ) -> Self {
         let stack = Stack::new(generator, runs, machine, base);
-        let base = &base.effects;
         let slope = |knob: &Knob| {
             if let Knob::Effect(effect, _, scope) = knob
                 && !generator.hears(effect, *scope)
             {
                 return None;
             }
-            let (mut machine, mut effects) = (machine.clone(), base.clone());
-            let at = match knob {
-                Knob::Effect(_, parameter, scope) => parameter.get(base, *scope),
-                Knob::Machine(_) => 1.0,
-            };
-            knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
-            let nudged = stack.again(runs, &machine, (&effects).into());
+            let (machine, nudged) = nudged(machine, base, knob);
+            let nudged = stack.again(runs, &machine, nudged.from(Onset::ALWAYS));
             let slope: Vec<f64> =
                 nudged.iter().zip(&stack.values).map(|(n, b)| (n - b) / NUDGE).collect();
             slope.iter().any(|s| *s != 0.0).then_some(slope)
@@ -167,7 +161,7 @@ impl Watch {
         beliefs: &[Belief<'_>],
     ) -> Vec<f64> {
         let mut values = self.stack.values.clone();
-        let mut before = self.stack.base_effects();
+        let mut before = &self.stack.base().effects;
         for belief in beliefs {
             let later = self.stack.after(runs, machine, before, *belief);
             for (k, (value, later)) in values.iter_mut().zip(later).enumerate() {
@@ -180,7 +174,7 @@ impl Watch {
         values
     }
 
-    /// The same for effects that set in at each of `onsets`, as if they had always been there, so that one run of the
+    /// The same for what sets in at each of `onsets`, as if they had always been there, so that one run of the
     /// generator does for all. But for a valve's play: the spool would not be where it is, for as long as no command
     /// crosses the play. And for fixes that jump, where `jumps` are asked for: that is for onsets that lie close
     /// together, as a jump at a wrong instant is worse than none.
@@ -188,15 +182,16 @@ impl Watch {
         &self,
         runs: &[Signals],
         machine: &Machine,
-        effects: &Effects,
+        supposed: &Supposed,
         onsets: &[Onset],
         jumps: bool,
     ) -> Vec<Sums> {
+        let effects = &supposed.effects;
         if self.stack.plays_otherwise(effects) || (jumps && self.stack.jumps(effects)) {
-            let belief = |&onset| Belief { effects, onset };
-            return onsets.iter().map(|at| self.again(runs, machine, belief(at))).collect();
+            let again = |&at| self.again(runs, machine, supposed.from(at));
+            return onsets.iter().map(again).collect();
         }
-        let values = self.stack.again(runs, machine, effects.into());
+        let values = self.stack.again(runs, machine, supposed.from(Onset::ALWAYS));
         onsets.iter().map(|&onset| self.sums_of(&self.stitched(&values, onset))).collect()
     }
 
@@ -291,4 +286,18 @@ impl Watch {
         }
         Sums { squares: self.stack.squares(values), gradients }
     }
+}
+
+/// The machine and what is believed of it with `knob` turned a little.
+fn nudged(machine: &Machine, base: &Base, knob: &Knob) -> (Machine, Supposed) {
+    let turned = |effects: &Effects| {
+        let (mut machine, mut effects) = (machine.clone(), effects.clone());
+        let at = match knob {
+            Knob::Effect(_, parameter, scope) => parameter.get(&effects, *scope),
+            Knob::Machine(_) => 1.0,
+        };
+        knob.set(&mut machine, &mut effects, at + NUDGE * knob.tolerance());
+        (machine, effects)
+    };
+    (turned(&base.effects).0, base.with(|effects| turned(effects).1))
 }

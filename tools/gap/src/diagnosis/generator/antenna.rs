@@ -50,13 +50,15 @@ mod tests {
     use xt28_sim::Effects;
 
     use super::*;
+    use crate::diagnosis::belief::Base;
+    use crate::diagnosis::onset::Onset;
 
     #[test]
     fn a_receiver_is_what_it_is_when_it_speaks() {
         let (sound, mut off) = (Effects::default(), Effects::default());
         off.sensors.gnss_latency.delay_s = 0.3;
         off.sensors.gnss_lever_arm.y_m = -0.5;
-        let late = EffectSchedule { before: &sound, from_s: 4.0, effects: &off, since_s: 0.0 };
+        let late = EffectSchedule::late(&sound, 4.0, &off);
         let antenna = Antenna::new(late);
         assert_eq!((antenna.late_s(3.9), antenna.late_s(4.0)), (0.0, 0.3));
         assert_eq!(antenna.jumped_m([3.5, 4.5]), [0.0, -0.5]);
@@ -64,7 +66,8 @@ mod tests {
         assert!((antenna.passed_s([4.5, 5.5]) - 1.0).abs() < 1e-12);
         let always = Antenna::new((&off).into());
         assert_eq!((always.late_s(0.0), always.jumped_m([0.0, 9.0])), (0.3, [0.0; 2]));
-        let base = EffectSchedule { since_s: 4.0, ..(&off).into() };
+        let base = Base { effects: off, since: Onset::in_every_run(4.0), before: sound };
+        let base = base.schedule(base.belief(), 0.0);
         assert_eq!(Antenna::new(base).jumped_m([3.5, 4.5]), [0.0, -0.5]);
     }
 }

@@ -76,34 +76,23 @@ impl<'a> ArmDrive<'a> {
     pub(super) fn over(mut self, schedule: EffectSchedule<'_>) -> Self {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let sample = |at_s: f64| (at_s / DT_S).round().max(0.0) as usize;
-        let (since, from) = (sample(schedule.since_s), sample(schedule.from_s));
-        let sound = Effects::default();
-        let [was, is] =
-            [schedule.before, schedule.effects].map(|effects| effects.wheels[self.wheel]);
-        // Before a base whose sensors jumped one does not look, but what the oil holds is from there.
-        let mut before =
-            if since > from && was == is { (since, sound.wheels[self.wheel]) } else { (from, was) };
-        let reads = |sensors: &WheelEffects| (sensors.stroke_bias, sensors.stroke_scale);
-        if before.0 > 0 && reads(&before.1) != reads(&is) {
-            before.0 = self.jump_about(before.0);
-            self.jumps = Some(before.0);
+        for (k, change) in schedule.changes().enumerate() {
+            let (at, [was, is]) = (sample(change.at_s), change.from_to);
+            if is_another_arm(was, is, self.wheel) {
+                self.anew[k] = Some(at);
+            }
+            let play = |effects: &Effects| effects.arms[self.wheel].hysteresis;
+            if play(was) != play(is) {
+                self.plays[k] = Some(at);
+            }
+            let [was, is] = [was, is].map(|effects| effects.wheels[self.wheel]);
+            let reads = |sensors: &WheelEffects| (sensors.stroke_bias, sensors.stroke_scale);
+            if was != is {
+                self.jumps = (reads(&was) != reads(&is)).then(|| self.jump_about(at));
+                let before = Sensing::new(self.area_bore_m2, &was);
+                self.before = Some((self.jumps.unwrap_or(at), before));
+            }
         }
-        self.before =
-            (before.0 > 0).then(|| (before.0, Sensing::new(self.area_bore_m2, &before.1)));
-        let becomes =
-            |at: usize, [was, is]: [&Effects; 2]| is_another_arm(was, is, self.wheel).then_some(at);
-        self.anew = [
-            becomes(since, [&sound, schedule.before]),
-            becomes(from, [schedule.before, schedule.effects]),
-        ];
-        let plays = |at: usize, [was, is]: [&Effects; 2]| {
-            let [was, is] = [was, is].map(|effects| effects.arms[self.wheel].hysteresis);
-            (at > 0 && was != is).then_some(at)
-        };
-        self.plays = [
-            plays(since, [&sound, schedule.before]),
-            plays(from, [schedule.before, schedule.effects]),
-        ];
         self
     }
 
@@ -255,7 +244,9 @@ fn is_another_arm(was: &Effects, is: &Effects, wheel: Wheel) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::still::still;
+    use crate::diagnosis::belief::Base;
     use crate::diagnosis::gauge::Gauge;
+    use crate::diagnosis::onset::Onset;
     use xt28_sim::effects::Effect;
 
     use super::*;
@@ -314,7 +305,12 @@ mod tests {
             seen_n = KEPT * seen_n + (1.0 - KEPT) * reading_n;
             s.cylinder_load_n[w][i] = seen_n;
         }
-        let schedule = EffectSchedule { before: &off, from_s: 0.0, effects: &off, since_s: 10.0 };
+        let base = Base {
+            effects: off.clone(),
+            since: Onset::in_every_run(10.0),
+            before: Effects::default(),
+        };
+        let schedule = base.schedule(base.belief(), 0.0);
         let drive = ArmDrive::new(&s, &machine, &off, w).over(schedule);
         let (errors_m, _) = drive.stroke_errors_m(&[], None);
         let largest_m = errors_m[1000..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
@@ -333,7 +329,7 @@ mod tests {
             *stroke_m -= 0.012 * jumped(i);
         }
         for from_s in [4.98, 5.0, 5.02] {
-            let late = EffectSchedule { before: &sound, from_s, effects: &off, since_s: 0.0 };
+            let late = EffectSchedule::late(&sound, from_s, &off);
             let drive = ArmDrive::new(&s, &machine, &off, w).over(late);
             let (errors_m, _) = drive.stroke_errors_m(&[], None);
             let largest_m = errors_m[100..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));

@@ -240,7 +240,7 @@ mod tests {
         half.steering.rear_follower.ratio_factor = 0.5;
         // It stands as the log begins, so that nothing is summed up.
         Wheel::ALL.into_iter().for_each(|w| s.wheel_speed_rad_s[w][..100].fill(0.0));
-        let late = EffectSchedule { before: &sound, from_s: 10.0, effects: &half, since_s: 0.0 };
+        let late = EffectSchedule::late(&sound, 10.0, &half);
         s.steer_opening[1] = steer_opening_asked(&s, &machine, late, 1);
         let asked = |schedule| steer_opening_asked(&s, &machine, schedule, 1);
         let [always, never] = [asked((&half).into()), asked((&sound).into())];

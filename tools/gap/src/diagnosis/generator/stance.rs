@@ -15,7 +15,7 @@ mod strained;
 mod sway;
 
 use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
-use xt28_sim::{Effects, Parts};
+use xt28_sim::Parts;
 
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
@@ -113,11 +113,10 @@ pub(super) fn stance_errors(
     schedule: EffectSchedule<'_>,
 ) -> StanceErrors {
     let instants = s.instants(|| instants::instants(s, machine));
-    let sound = Effects::default();
     let each = Beside::each(s, schedule).into_iter().map(|beside| {
         let mut all = errors(s, machine, schedule, &beside, instants);
         // Tyres that go soft underway let the machine down, and no more than that.
-        if let Some((earlier, until_s)) = schedule.earlier(&sound) {
+        if let Some((earlier, until_s)) = schedule.earlier() {
             let then = instants.iter().take_while(|i| i.sample as f64 * DT_S < until_s);
             let before = errors(s, machine, earlier, &beside, instants);
             all.iter_mut().zip(before).zip(then).for_each(|((is, was), _)| *is = was);
@@ -312,8 +311,12 @@ fn weigh(
 
 #[cfg(test)]
 mod tests {
+    use xt28_sim::Effects;
+
     use super::super::still::still;
     use super::*;
+    use crate::diagnosis::belief::Base;
+    use crate::diagnosis::onset::Onset;
 
     /// Change of pitch within seconds, floors, of a machine that has its nose `sinks_rad` lower from 8 s on, and that is
     /// believed, or known by the base, to have soft front tyres from then on.
@@ -331,8 +334,10 @@ mod tests {
         for w in [Wheel::Fr, Wheel::Fl] {
             soft.wheels[w].soft_tyre.stiffness_n_m = 5.0e5;
         }
-        let late = EffectSchedule { before: &sound, from_s: 8.0, effects: &soft, since_s: 0.0 };
-        let base = EffectSchedule { since_s: 8.0, ..(&soft).into() };
+        let late = EffectSchedule::late(&sound, 8.0, &soft);
+        let base =
+            Base { effects: soft.clone(), since: Onset::in_every_run(8.0), before: sound.clone() };
+        let base = base.schedule(base.belief(), 0.0);
         let errors = stance_errors(&s, &Machine::xt28(), if is_base { base } else { late });
         errors
             .pitch_sway_rad

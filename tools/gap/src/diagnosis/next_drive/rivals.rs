@@ -114,7 +114,7 @@ impl<'a> CauseAt<'a> {
 impl Rival {
     /// It, as a belief on the runs driven.
     pub(super) fn belief(&self) -> Belief<'_> {
-        Belief { effects: &self.effects, onset: self.onset }
+        Belief { onset: self.onset, ..(&self.effects).into() }
     }
 
     /// The least that `cost` makes of it beside `base`, with what one has to believe for its parameters.
@@ -126,7 +126,7 @@ impl Rival {
         let only = |generator: Generator| generator.hears(effect, scope);
         let of = |values: &[f64]| {
             let effects = &hypothesis.applied(base, values);
-            cost(Belief { effects, onset: self.onset }, &only)
+            cost(Belief { onset: self.onset, ..effects.into() }, &only)
         };
         hypothesis.least(&of, values)
     }

@@ -76,7 +76,7 @@ mod tests {
         off.sensors.imu_offset.roll_rad = 0.02;
         off.slope.grade_y_rad = -0.02;
         assert_eq!(Beside::each(&s, (&off).into()).len(), 1, "what always was is what it is");
-        let late = EffectSchedule { before: &sound, from_s: 3.0, effects: &off, since_s: 0.0 };
+        let late = EffectSchedule::late(&sound, 3.0, &off);
         let east = [[1.0, 0.0]; 2];
         let [felt, followed] = [0, 1].map(|way| {
             let beside = &Beside::each(&s, late)[way];

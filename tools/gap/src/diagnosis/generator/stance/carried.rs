@@ -169,7 +169,9 @@ mod tests {
     use xt28_machine::Wheel;
 
     use super::*;
+    use crate::diagnosis::belief::Base;
     use crate::diagnosis::generator::still::still;
+    use crate::diagnosis::onset::Onset;
 
     /// A sensor that jumps does so behind the ECU's filter.
     #[test]
@@ -185,8 +187,10 @@ mod tests {
             let carrier = Carrier::new(&s, &machine, schedule, &parts, w, 1.0);
             carrier.sensing_at(i).gauge.load_n(reading_n[i], 0.0)
         };
-        let late = EffectSchedule { before: &sound, from_s: 5.0, effects: &off, since_s: 0.0 };
-        let known = EffectSchedule { since_s: 5.0, ..(&off).into() };
+        let late = EffectSchedule::late(&sound, 5.0, &off);
+        let base =
+            Base { effects: off.clone(), since: Onset::in_every_run(5.0), before: sound.clone() };
+        let known = base.schedule(base.belief(), 0.0);
         for i in [500, 510, 525, 550, 999] {
             assert!((load_n(late, i) - 8.0e4).abs() < 300.0, "{i}: {}", load_n(late, i));
             assert_eq!(load_n(known, i), load_n(late, i), "{i}");
@@ -219,7 +223,7 @@ mod tests {
         for (i, stroke_m) in s.smooth_stroke_m[Wheel::Bl].iter_mut().enumerate() {
             *stroke_m = 0.2 + 2.0e-5 * (i.min(300) + i.saturating_sub(700)) as f64;
         }
-        let late = EffectSchedule { before: &sound, from_s: 5.0, effects: &effects, since_s: 0.0 };
+        let late = EffectSchedule::late(&sound, 5.0, &effects);
         let seal = [seal(&s, late, Wheel::Bl), seal(&s, (&effects).into(), Wheel::Bl)];
         assert_eq!((seal[0].at_n(600), seal[0].left[600]), (0.0, 0.0));
         assert!(seal[1].at_n(600) > 7.0e3, "those that always did are strained");

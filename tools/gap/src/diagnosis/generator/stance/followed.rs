@@ -2,7 +2,7 @@
 
 use xt28_sim::Effects;
 
-use crate::diagnosis::belief::EffectSchedule;
+use crate::diagnosis::belief::{Change, EffectSchedule};
 use crate::diagnosis::blend::Blend;
 use crate::diagnosis::signals::DT_S;
 
@@ -22,18 +22,14 @@ impl<T: Blend> Followed<T> {
         of: impl Fn(&Effects) -> T,
         differs: impl Fn(&Effects, &Effects) -> bool,
     ) -> Self {
-        let EffectSchedule { before, from_s, effects, since_s } = schedule;
-        let becomes = |at_s: f64, was: &Effects, is: &Effects| {
-            (at_s > 0.0 && differs(was, is)).then(|| (at_s, of(is)))
-        };
-        let then =
-            [becomes(since_s, &Effects::default(), before), becomes(from_s, before, effects)];
-        let first = match then {
-            [Some(_), _] => of(&Effects::default()),
-            [None, Some(_)] => of(before),
-            [None, None] => of(effects),
-        };
-        Self { first, then }
+        let (mut first, mut then) = (None, [None; 2]);
+        for (k, Change { at_s, from_to: [was, is] }) in schedule.changes().enumerate() {
+            if differs(was, is) {
+                first.get_or_insert_with(|| of(was));
+                then[k] = Some((at_s, of(is)));
+            }
+        }
+        Self { first: first.unwrap_or_else(|| of(schedule.effects)), then }
     }
 
     /// Whether it jumps at all.
@@ -76,7 +72,7 @@ mod tests {
         let mut off = Effects::default();
         off.sensors.imu_offset.roll_rad = 0.02;
         let sound = Effects::default();
-        let schedule = EffectSchedule { before: &sound, from_s: 3.0, effects: &off, since_s: 0.0 };
+        let schedule = EffectSchedule::late(&sound, 3.0, &off);
         let of = |effects: &Effects| effects.sensors.imu_offset.roll_rad;
         let roll = Followed::new(schedule, of, |was, is| of(was) != of(is));
         let at = |sample| roll.at(sample, |time_s| (-time_s / 2.0).exp());

@@ -13,6 +13,7 @@ mod bumps;
 mod echo;
 mod halves;
 mod left;
+mod precision;
 mod span;
 mod stack;
 mod watch;
@@ -37,6 +38,7 @@ pub use halves::Uneven;
 pub(super) use halves::{BEND_RAD, SHUT};
 pub use left::Left;
 use left::{cost_of_squares, with_bumps};
+use precision::{add_precision, gradient, precision};
 use stack::Group;
 pub(super) use watch::Memory;
 use watch::{Sums, Watch};
@@ -369,34 +371,5 @@ impl<'a> Evidence<'a> {
             each.map(group).collect()
         };
         self.watches.iter().zip(sums.iter().map(Cow::as_ref)).map(of).collect()
-    }
-}
-
-/// Takes what one watch's groups, weighted, ask of the knobs from `slope`.
-fn gradient(slope: &mut DVector<f64>, watch: &Watch, weights: &[f64], sums: &Sums) {
-    for (weight, slopes) in weights.iter().zip(&sums.gradients) {
-        for (knob, by) in watch.knobs.iter().zip(slopes.iter()) {
-            slope[*knob] -= weight * by;
-        }
-    }
-}
-
-/// Precision of the knobs, in units of their tolerances: one's belief and every watch's word.
-fn precision(watches: &[Watch], knobs: usize) -> Cholesky<f64, Dyn> {
-    let mut precision = DMatrix::<f64>::identity(knobs, knobs);
-    for watch in watches {
-        add_precision(&mut precision, watch, &watch.weights);
-    }
-    Cholesky::new(precision).expect("a sum of squares and the identity")
-}
-
-/// Adds one watch's word, its groups weighted.
-fn add_precision(precision: &mut DMatrix<f64>, watch: &Watch, weights: &[f64]) {
-    for (weight, product) in weights.iter().zip(&watch.products) {
-        for (i, a) in watch.knobs.iter().enumerate() {
-            for (j, b) in watch.knobs.iter().enumerate() {
-                precision[(*a, *b)] += weight * product[(i, j)];
-            }
-        }
     }
 }

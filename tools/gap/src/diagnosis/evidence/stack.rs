@@ -41,6 +41,8 @@ pub(super) struct Stack {
     pub(super) groups: Vec<Group>,
     /// What they were made with.
     base: Base,
+    /// Whether the base makes each run another, by its place.
+    hears_base: Vec<bool>,
     mask: Vec<bool>,
 }
 
@@ -63,11 +65,13 @@ impl Stack {
             began_s: runs.iter().map(|run| run.began_s).collect(),
             groups: Vec::new(),
             base: base.clone(),
+            hears_base: Vec::new(),
             mask: Vec::new(),
         };
         for (number, run) in runs.iter().enumerate() {
             let schedule = base.schedule(base.belief(), run.began_s);
-            for residual in residuals(generator, run, machine, schedule) {
+            stack.hears_base.push(hears_base(generator, run, machine, schedule));
+            for residual in stack.residuals(number, run, machine, schedule) {
                 let group = stack.group_of(residual.signal);
                 let weight = residual.signal.weight();
                 for (i, value) in residual.values.iter().enumerate() {
@@ -110,9 +114,9 @@ impl Stack {
     ) -> Vec<f64> {
         let mut values = Vec::with_capacity(self.values.len());
         let mut mask = self.mask.iter();
-        for run in runs {
+        for (number, run) in runs.iter().enumerate() {
             let schedule = self.base.schedule(belief, run.began_s).taking_over(before);
-            for residual in residuals(self.generator, run, machine, schedule) {
+            for residual in self.residuals(number, run, machine, schedule) {
                 let root = residual.signal.weight().sqrt();
                 for value in residual.values {
                     if mask.next() == Some(&true) {
@@ -172,6 +176,32 @@ impl Stack {
         each.collect()
     }
 
+    /// Residuals on the run at place `number`: what was read before the base set in is told as if it never did, as a
+    /// block that remembers would have the base's law all along.
+    fn residuals(
+        &self,
+        number: usize,
+        run: &Signals,
+        machine: &Machine,
+        schedule: EffectSchedule<'_>,
+    ) -> Vec<Residual> {
+        let (generator, since_s) = (self.generator, schedule.since_s());
+        if !self.hears_base[number] {
+            return generator.residuals_over(run, machine, schedule.without_base());
+        }
+        let mut all = generator.residuals_over(run, machine, schedule);
+        if since_s > 0.0 {
+            let before = generator.residuals_over(run, machine, schedule.without_base());
+            for (residual, before) in all.iter_mut().zip(before) {
+                let read_at_s = |i: usize| generator.read_at_s(residual.signal, i as f64 * STEP_S);
+                let all = 0..before.values.len();
+                let until = all.take_while(|i| read_at_s(*i) < since_s).count();
+                residual.values[..until].copy_from_slice(&before.values[..until]);
+            }
+        }
+        all
+    }
+
     fn group_of(&mut self, signal: Signal) -> usize {
         self.groups.iter().position(|group| group.signal == signal).unwrap_or_else(|| {
             self.groups.push(Group { signal, samples: 0.0 });
@@ -180,23 +210,16 @@ impl Stack {
     }
 }
 
-/// Residuals of `generator` on a run: what was read before the base set in is told as if it never did, as a block that
-/// remembers would have the base's law all along.
-fn residuals(
+/// Whether a base that sets in underway makes `generator` say anything else of a run.
+fn hears_base(
     generator: Generator,
     run: &Signals,
     machine: &Machine,
     schedule: EffectSchedule<'_>,
-) -> Vec<Residual> {
-    let mut all = generator.residuals_over(run, machine, schedule);
-    let since_s = schedule.since_s();
-    if since_s > 0.0 {
-        let before = generator.residuals_over(run, machine, schedule.without_base());
-        for (residual, before) in all.iter_mut().zip(before) {
-            let read_at_s = |i: usize| generator.read_at_s(residual.signal, i as f64 * STEP_S);
-            let until = (0..before.values.len()).take_while(|i| read_at_s(*i) < since_s).count();
-            residual.values[..until].copy_from_slice(&before.values[..until]);
-        }
-    }
-    all
+) -> bool {
+    let bits = |schedule| -> Vec<u64> {
+        let all = generator.residuals_over(run, machine, schedule);
+        all.iter().flat_map(|one| &one.values).map(|value| value.to_bits()).collect()
+    };
+    schedule.since_s() <= 0.0 || bits(schedule) != bits(schedule.without_base())
 }

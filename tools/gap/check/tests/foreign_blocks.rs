@@ -133,7 +133,7 @@ fn a_scale_that_stands_for_a_bias_is_of_two_sizes() {
         let hypothesis = hypothesis(effect, effects::Scope::Wheel(Wheel::Ml));
         let fit = hypothesis.refit(&evidence, onset, from);
         let effects = hypothesis.applied(&Effects::default(), &fit.values);
-        let belief = Belief { effects: &effects, onset };
+        let belief = Belief { onset, ..(&effects).into() };
         let unevens = evidence.again(belief, &Effects::default()).1;
         unevens.iter().map(Uneven::nats).fold(0.0, f64::max)
     };
@@ -164,13 +164,17 @@ fn of_two_faults_one_that_sets_in_late_leaves_no_echo() {
     let runs = signals(case.only(Manoeuvre::ArmStep, 32.0));
     let deadband = hypothesis("valve-deadband", effects::Scope::All);
     let nothing = Effects::default();
-    let base =
-        Base { effects: deadband.applied(&nothing, &[0.0345]), since: Onset::in_every_run(10.3) };
+    let base = Base {
+        effects: deadband.applied(&nothing, &[0.0345]),
+        since: Onset::in_every_run(10.3),
+        before: nothing.clone(),
+    };
     let scale = hypothesis("stroke-scale", effects::Scope::Wheel(Wheel::Fr));
-    let both = scale.applied(&base.effects, &[1.0431]);
+    let [both, alone] = [&base.effects, &nothing].map(|base| scale.applied(base, &[1.0431]));
+    let belief = Belief { effects: &both, before_base: &alone, onset: Onset::ALWAYS };
     let watched = vec![Generator::ArmStroke(Wheel::Fr)];
     let evidence = Evidence::watching(watched, &runs, &Machine::xt28(), base, &Knob::all());
-    let echo = evidence.again(&both, &nothing).0[0];
+    let echo = evidence.again(belief, &nothing).0[0];
     assert!(echo.explained > 1.0e4 && echo.nats < 10.0, "{echo:?}");
 }
 

@@ -189,6 +189,7 @@ impl<'e> From<&'e Effects> for EffectSchedule<'e> {
     }
 }
 
+/// There from the start, beside a base that is as well.
 impl<'e> From<&'e Effects> for Belief<'e> {
     fn from(effects: &'e Effects) -> Self {
         Self { effects, before_base: effects, onset: Onset::ALWAYS }

@@ -200,8 +200,8 @@ impl<'e> From<&'e Effects> for Belief<'e> {
 mod tests {
     use super::*;
 
-    /// A receiver that is late from 8 s on, and a unit that comes loose at an instant of its own.
-    fn told(from_s: f64) -> [(f64, f64); 3] {
+    /// A receiver that is late from 8 s on, and beside it a unit that is loose.
+    fn late_and_loose() -> (Base, Supposed) {
         let mut base = Base::from(Effects::default());
         base.effects.sensors.gnss_latency.delay_s = 0.2;
         base.since = Onset::in_every_run(8.0);
@@ -210,6 +210,12 @@ mod tests {
             effects.sensors.imu_offset.roll_rad = 0.1;
             effects
         });
+        (base, loose)
+    }
+
+    /// How late the one is and how far off the other, rad, at 3, 6 and 9 s, where the unit comes loose at `from_s`.
+    fn told(from_s: f64) -> [(f64, f64); 3] {
+        let (base, loose) = late_and_loose();
         let schedule = base.schedule(loose.from(Onset::in_every_run(from_s)), 0.0);
         let late_s = schedule.of(|effects| effects.sensors.gnss_latency.delay_s);
         let roll_rad = schedule.of(|effects| effects.sensors.imu_offset.roll_rad);
@@ -226,14 +232,7 @@ mod tests {
 
     #[test]
     fn changes_come_in_their_order_and_the_last_can_be_undone() {
-        let [sound, mut base] = [Effects::default(), Effects::default()];
-        base.sensors.gnss_latency.delay_s = 0.2;
-        let base = Base { before: sound, effects: base, since: Onset::in_every_run(8.0) };
-        let loose = base.with(|effects| {
-            let mut effects = effects.clone();
-            effects.sensors.imu_offset.roll_rad = 0.1;
-            effects
-        });
+        let (base, loose) = late_and_loose();
         for (from_s, order, left) in [(4.0, vec![4.0, 8.0], 0.1), (9.0, vec![8.0, 9.0], 0.0)] {
             let schedule = base.schedule(loose.from(Onset::in_every_run(from_s)), 0.0);
             let at_s: Vec<f64> = schedule.changes().map(|change| change.at_s).collect();

@@ -57,7 +57,8 @@ impl Docket<'_> {
             gain + self.held.as_ref().map_or(0.0, |held| hypothesis.gain(held, at, values))
         };
         let once = once.filter(|once| {
-            let [each, other] = [told(each), told(each).max(told((whole, onset)))];
+            let each = told(each);
+            let other = each.max(told((whole, onset)));
             told(*once) > if onset.is_once() { each } else { other + once_least(other) }
         });
         let (gain, at) = once.unwrap_or(each);
@@ -77,7 +78,7 @@ impl Docket<'_> {
         }
         let better = if late.score() > found.score() { &late } else { found };
         if better.fit.onset.is_once() {
-            // What sets in during a run held out is nowhere where the first run fitted after it begins.
+            // One that came during a run held out is found with the next run fitted, from where it foretells nothing.
             let begun = self.begun_for_all(better);
             return Some(self.once_or_always(begun.unwrap_or_else(|| better.clone())));
         }

@@ -194,8 +194,8 @@ impl Stack {
             let before = generator.residuals_over(run, machine, schedule.without_base());
             for (residual, before) in all.iter_mut().zip(before) {
                 let read_at_s = |i: usize| generator.read_at_s(residual.signal, i as f64 * STEP_S);
-                let all = 0..before.values.len();
-                let until = all.take_while(|i| read_at_s(*i) < since_s).count();
+                let steps = 0..before.values.len();
+                let until = steps.take_while(|i| read_at_s(*i) < since_s).count();
                 residual.values[..until].copy_from_slice(&before.values[..until]);
             }
         }

@@ -16,8 +16,6 @@ import math
 import sys
 import threading
 
-import roslibpy
-
 STROKE_MAX_M = 0.25
 JOINT_MAX_RAD = math.radians(25.0)
 MIDDLE_M = 0.17
@@ -49,6 +47,7 @@ def main():
     parser.add_argument("--port", type=int, default=9090)
     parser.add_argument("--east", type=float, default=25.0, help="where to, m east of the origin")
     args = parser.parse_args()
+    import roslibpy  # here, so that imitate.py has act() without it
 
     ros = roslibpy.Ros(args.host, args.port)
     try:

@@ -23,8 +23,9 @@ pub(crate) struct Args {
     pub(crate) bus: String,
 
     /// What drives: goto:X,Y,HEADING_DEG (metres east and north of the origin, degrees
-    /// counter-clockwise from east), script:FILE (timed commands, TOML), rosbridge:[ADDRESS:]PORT (a controller
-    /// that connects there, asked at each fix; with `,tick` behind it at 100 Hz) or hold
+    /// counter-clockwise from east), network:FILE[@X,Y,HEADING_DEG] (a learnt policy by its policy file, TOML, with a
+    /// goal where it sees one), script:FILE (timed commands, TOML), rosbridge:[ADDRESS:]PORT (a controller that
+    /// connects there, asked at each fix; with `,tick` behind it at 100 Hz) or hold
     #[arg(long, value_name = "POLICY")]
     pub(crate) policy: String,
 
@@ -32,7 +33,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DEVICE")]
     pub(crate) gnss: Option<PathBuf>,
 
-    /// Terrain file (TOML) that a controller's local height map is cut from; without it there is no such map
+    /// Terrain file (TOML) that the local height map of a network or a controller is cut from; without it there is
+    /// no such map
     #[arg(long, value_name = "FILE")]
     pub(crate) map: Option<PathBuf>,
 

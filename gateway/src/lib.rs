@@ -7,7 +7,7 @@
 //! | Module | What |
 //! |---|---|
 //! | [`Observation`] | sensors averaged between fixes, pose of the front axle |
-//! | [`policy`] | the trait, and the policies that need no network |
+//! | [`policy`] | the trait, and the policies that think here, learnt ones among them |
 //! | [`Remote`] | a controller elsewhere, over rosbridge |
 //! | [`Action`] | eight numbers in -1..1 and what they mean |
 //! | `xt28_safety` | what may leave |
@@ -18,6 +18,7 @@ mod config;
 mod epoch;
 mod frames;
 mod gateway;
+mod heights;
 mod observation;
 mod peer;
 pub mod policy;

@@ -1,9 +1,10 @@
-//! Where demands come from: one trait, and the policies that need no network.
+//! Where demands come from: one trait, and the policies that think here.
 
 mod external;
 mod goto;
 mod hold;
 mod levelling;
+mod network;
 mod path;
 mod pose_filter;
 mod script;
@@ -19,9 +20,10 @@ use crate::Observation;
 pub use external::{Account, External, Refusal, Seat, Seen};
 pub use goto::{Goto, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
 pub use hold::Hold;
+pub use network::{Network, NetworkError};
 pub use script::Script;
 pub use script_file::ScriptError;
-pub use spec::{SpecError, from_spec};
+pub use spec::{SpecError, files_of, from_spec};
 
 /// Turns observations into demands. It sees nothing else and is trusted with nothing: the safety
 /// kernel stands between it and the bus.

@@ -26,7 +26,9 @@ pub(crate) enum Problem {
     Listen { address: SocketAddr, source: io::Error },
     #[error(transparent)]
     Map(#[from] TerrainError),
-    #[error("--map is for a controller's height map; give it with --policy rosbridge:PORT")]
+    #[error(
+        "--map is for who looks at heights; give it with --policy network:FILE or rosbridge:PORT"
+    )]
     MapUnused,
     #[error("{path}: cannot open the receiver's port: {source}; see --gnss and its permissions")]
     OpenGnss { path: PathBuf, source: io::Error },

@@ -103,13 +103,13 @@ fn policy(
     machine: &Machine,
     config: &GatewayConfig,
 ) -> Result<(Box<dyn Policy>, Option<Remote>), Problem> {
-    let Some(listen) = listen else {
-        if args.map.is_some() {
-            return Err(Problem::MapUnused);
-        }
-        return Ok((gateway::policy::from_spec(&args.policy, machine)?, None));
-    };
+    if args.map.is_some() && listen.is_none() && !args.policy.starts_with("network:") {
+        return Err(Problem::MapUnused);
+    }
     let map = args.map.as_deref().map(surveyed).transpose()?;
+    let Some(listen) = listen else {
+        return Ok((gateway::policy::from_spec(&args.policy, machine, map.as_ref())?, None));
+    };
     let (remote, policy) = Remote::open(listen, machine, config, map)
         .map_err(|source| Problem::Listen { address: listen.address, source })?;
     Ok((Box::new(policy), Some(remote)))

@@ -24,8 +24,9 @@ use serde_json::{Value, json};
 use xt28_machine::{Machine, SimTime};
 use xt28_rosbridge::{Call, Catalogue, ClientId, Event, Server, Service, Taken, Topic, printable};
 use xt28_safety::Order;
-use xt28_terrain::{LocalMap, MapPose, Terrain};
+use xt28_terrain::Terrain;
 
+use crate::heights::read_heights;
 use crate::policy::{Account, External, Seat, Seen};
 use crate::{GatewayConfig, Outcome, Status};
 
@@ -279,12 +280,7 @@ impl Remote {
         let (Some(map), Some(located)) = (&self.map, &seen.observation.located) else {
             return false;
         };
-        let pose = located.pose;
-        // Above the ground under the front axle: receiver and survey need not agree on height.
-        let ground_m = map.height_m(pose.east_m, pose.north_m);
-        let position_m = [pose.east_m, pose.north_m, ground_m];
-        let pose = MapPose { position_m, heading_rad: pose.heading_rad };
-        LocalMap::default().read(map, &pose, &mut self.heights_m);
+        read_heights(map, &located.pose, &mut self.heights_m);
         true
     }
 }

@@ -105,7 +105,7 @@ proptest! {
     #[test]
     fn any_name_is_a_policy_or_a_refusal(name in "(goto:|hold|)[-0-9,.einfa ]{0,20}") {
         let machine = Machine::xt28();
-        if let Err(error) = from_spec(&name, &machine) {
+        if let Err(error) = from_spec(&name, &machine, None) {
             prop_assert_eq!(error.to_string().lines().count(), 1);
         }
     }

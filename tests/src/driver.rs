@@ -1,4 +1,4 @@
-//! What drives a scenario: its own policy or another, and the script that it names.
+//! What drives a scenario: its own policy or another, and the files that it names.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,15 +23,19 @@ impl Scenario {
         policy.clone_into(&mut self.policy);
         "--policy".clone_into(&mut self.policy_at);
         self.script = None;
-        self.read_script(Path::new(""), &|file| std::fs::read_to_string(file))
+        self.find_policy(Path::new(""), &|file| std::fs::read_to_string(file))
     }
 
-    /// Reads the script that the policy names, if it names one.
-    pub(crate) fn read_script(
+    /// Finds the file that the policy names, if it names one, `beside` the scenario's own, and reads a script.
+    pub(crate) fn find_policy(
         &mut self,
         beside: &Path,
         read: &impl Fn(&Path) -> io::Result<String>,
     ) -> Result<(), ScenarioError> {
+        if let Some(file) = self.policy.strip_prefix("network:") {
+            // What comes behind the file's name is no part of a path, and stays as it is.
+            self.policy = format!("network:{}", beside.join(file).display());
+        }
         let Some(file) = self.policy.strip_prefix("script:") else { return Ok(()) };
         let script = beside.join(file);
         let text = read(&script).map_err(|source| ScenarioError::Script {

@@ -30,7 +30,7 @@ pub struct Scenario {
     /// The ground: tables of a terrain, or a terrain file relative to the scenario file.
     #[serde(default)]
     pub terrain: Ground,
-    /// What the gateway drives with, as its `--policy` takes it. A `script:FILE` lies beside the
+    /// What the gateway drives with, as its `--policy` takes it. A `script:` or `network:FILE` lies beside the
     /// scenario file.
     pub policy: String,
     /// File and line of the policy, for messages; not a key.
@@ -104,7 +104,7 @@ impl Scenario {
             terrain_at: format!("{}:{}", path.display(), line_of(text, "terrain")),
             source,
         })?;
-        scenario.read_script(beside, &read)?;
+        scenario.find_policy(beside, &read)?;
         if let Some(file) = &mut scenario.operator {
             *file = beside.join(&file);
             let cab = CabScript::read(file, &read);

@@ -74,7 +74,7 @@ impl Setup {
                 let script = policy::Script::parse(text, path, &limits);
                 Ok(Box::new(script.map_err(SpecError::from)?))
             }
-            None => policy::from_spec(&self.scenario.policy, &self.machine),
+            None => policy::from_spec(&self.scenario.policy, &self.machine, Some(&self.map)),
         }
     }
 
@@ -102,12 +102,13 @@ impl Setup {
     }
 
     /// The files beside the scenario's own that a run of it reads.
-    pub fn files(&self) -> impl Iterator<Item = &Path> {
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         let scenario = &self.scenario;
         let script = scenario.script.as_ref().map(|script| &script.path);
         let named = [&scenario.machine, &scenario.operator, &scenario.terrain.file];
         let maps = scenario.terrain.spec.height_map.iter().map(|map| &map.file);
-        named.into_iter().flatten().chain(script).chain(maps).map(PathBuf::as_path)
+        let named = named.into_iter().flatten().chain(script).chain(maps).cloned();
+        named.chain(policy::files_of(&scenario.policy))
     }
 
     /// The machine file, where one is named; otherwise the built-in machine runs.

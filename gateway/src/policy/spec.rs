@@ -1,10 +1,11 @@
 //! Policies by name, as a command line or a scenario gives them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use xt28_machine::Machine;
+use xt28_terrain::Terrain;
 
-use super::{Goto, Hold, Policy, Script, ScriptError};
+use super::{Goto, Hold, Network, NetworkError, Policy, Script, ScriptError};
 use crate::{GatewayConfig, Pose};
 
 /// Why a policy could not be had.
@@ -12,15 +13,17 @@ use crate::{GatewayConfig, Pose};
 pub enum SpecError {
     /// No policy of that name.
     #[error(
-        "no policy {spec:?}; give goto:X,Y,HEADING_DEG, script:FILE, rosbridge:[ADDRESS:]PORT[,tick] or hold"
+        "no policy {spec:?}; give goto:X,Y,HEADING_DEG, network:FILE[@X,Y,HEADING_DEG], script:FILE, \
+         rosbridge:[ADDRESS:]PORT[,tick] or hold"
     )]
     Unknown {
         /// What was given.
         spec: String,
     },
-    /// The numbers of a `goto` are not three finite numbers.
+    /// The numbers of a goal are not three finite numbers.
     #[error(
-        "bad goal in {spec:?}; give goto:X,Y,HEADING_DEG in metres and degrees, as goto:25,0,0"
+        "bad goal in {spec:?}; give goto:X,Y,HEADING_DEG in metres and degrees, as goto:25,0,0, and to a network \
+         network:FILE@25,0,0"
     )]
     Goal {
         /// What was given.
@@ -44,18 +47,28 @@ pub enum SpecError {
     /// The script was refused.
     #[error(transparent)]
     Script(#[from] ScriptError),
+    /// The network was refused.
+    #[error(transparent)]
+    Network(#[from] NetworkError),
 }
 
-/// The policy that `spec` names: `goto:X,Y,HEADING_DEG`, `script:FILE` or `hold`. A controller elsewhere is had by
-/// [`crate::Remote`].
+/// The policy that `spec` names: `goto:X,Y,HEADING_DEG`, `network:FILE[@X,Y,HEADING_DEG]`, `script:FILE` or `hold`. A
+/// controller elsewhere is had by [`crate::Remote`]. `map` is for a network that looks at the heights around it.
 ///
 /// # Errors
 /// [`SpecError`], with what would be right.
-pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecError> {
+pub fn from_spec(
+    spec: &str,
+    machine: &Machine,
+    map: Option<&Terrain>,
+) -> Result<Box<dyn Policy>, SpecError> {
+    let pose = |goal| goal_pose(goal).ok_or_else(|| SpecError::Goal { spec: spec.to_owned() });
     match spec.split_once(':') {
-        Some(("goto", goal)) => {
-            let pose = goal_pose(goal).ok_or_else(|| SpecError::Goal { spec: spec.to_owned() })?;
-            Ok(Box::new(Goto::new(machine, pose)))
+        Some(("goto", goal)) => Ok(Box::new(Goto::new(machine, pose(goal)?))),
+        Some(("network", network)) => {
+            let (file, goal) = network_parts(network);
+            let goal = goal.map(pose).transpose()?;
+            Ok(Box::new(Network::load(Path::new(file), machine, goal, map)?))
         }
         Some(("script", file)) => {
             let limits = GatewayConfig::new(machine).limits;
@@ -66,6 +79,24 @@ pub fn from_spec(spec: &str, machine: &Machine) -> Result<Box<dyn Policy>, SpecE
             Err(SpecError::Elsewhere { spec: spec.to_owned() })
         }
         _ => Err(SpecError::Unknown { spec: spec.to_owned() }),
+    }
+}
+
+/// Files that the policy of this name reads, as far as they can be told.
+#[must_use]
+pub fn files_of(spec: &str) -> Vec<PathBuf> {
+    match spec.split_once(':') {
+        Some(("script", file)) => vec![file.into()],
+        Some(("network", network)) => Network::files(Path::new(network_parts(network).0)),
+        _ => Vec::new(),
+    }
+}
+
+/// The file of a network, and its goal: names of files may have an `@` as well.
+fn network_parts(network: &str) -> (&str, Option<&str>) {
+    match network.rsplit_once('@') {
+        Some((file, goal)) if !goal.ends_with(".toml") => (file, Some(goal)),
+        _ => (network, None),
     }
 }
 
@@ -88,22 +119,34 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_network_has_its_goal_behind_its_file() {
+        assert_eq!(network_parts("a@b/p.toml@25,0,0"), ("a@b/p.toml", Some("25,0,0")));
+        assert_eq!(network_parts("a@b/p.toml"), ("a@b/p.toml", None));
+        assert_eq!(network_parts("p@2.toml"), ("p@2.toml", None));
+    }
+
+    #[test]
     fn names_are_understood_or_refused_with_the_remedy() {
         let machine = Machine::xt28();
         for good in ["goto:25,0,0", "goto: 24.5, -4.98, -23", "hold"] {
-            assert!(from_spec(good, &machine).is_ok(), "{good}");
+            assert!(from_spec(good, &machine, None).is_ok(), "{good}");
         }
         for bad in ["goto:25,0", "goto:25,0,nan", "goto:1e300,0,0", "goto:", "goto:1,2,3,4"] {
-            let error = from_spec(bad, &machine).err().unwrap().to_string();
+            let error = from_spec(bad, &machine, None).err().unwrap().to_string();
             assert!(error.contains("goto:25,0,0"), "{error}");
         }
         for bad in ["", "drive", "hold:1", "onnx:policy"] {
-            let error = from_spec(bad, &machine).err().unwrap().to_string();
+            let error = from_spec(bad, &machine, None).err().unwrap().to_string();
             assert!(error.starts_with("no policy"), "{error}");
         }
-        let error = from_spec("rosbridge:9090", &machine).err().unwrap().to_string();
+        let error = from_spec("rosbridge:9090", &machine, None).err().unwrap().to_string();
         assert!(error.contains("xt28 run"), "{error}");
-        let error = from_spec("script:no/such.toml", &machine).err().unwrap().to_string();
+        let error = from_spec("script:no/such.toml", &machine, None).err().unwrap().to_string();
         assert!(error.contains("no/such.toml") && error.contains("existing file"), "{error}");
+        let error =
+            from_spec("network:no/such.toml@1,2", &machine, None).err().unwrap().to_string();
+        assert!(error.contains("network:FILE@25,0,0"), "{error}");
+        let error = from_spec("network:no/such.toml", &machine, None).err().unwrap().to_string();
+        assert!(error.starts_with("no/such.toml: cannot read it"), "{error}");
     }
 }

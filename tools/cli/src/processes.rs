@@ -217,7 +217,8 @@ fn gateway_arguments(
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.into());
     }
-    if setup.listen()?.is_some() {
+    let is_network = setup.scenario.policy.starts_with("network:");
+    if is_network || setup.listen()?.is_some() {
         add("--map", terrain_file(setup, folder)?);
     }
     Ok(arguments)

@@ -95,7 +95,8 @@ impl Run {
         let name = &setup.scenario.name;
         let artefacts = Artefacts::new(name, self.record.as_deref(), self.out.as_deref())?;
         let own = self.effects.as_deref().into_iter().chain([Path::new(&self.scenario)]);
-        artefacts.ensure_apart(setup.files().chain(own))?;
+        let read: Vec<PathBuf> = setup.files().collect();
+        artefacts.ensure_apart(read.iter().map(PathBuf::as_path).chain(own))?;
         let (recording, cost) = if self.bus == VIRTUAL {
             self.lockstep(&setup, &artefacts)?
         } else {

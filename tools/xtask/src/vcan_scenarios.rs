@@ -84,6 +84,7 @@ const TESTS: &[Test] = &[
     Test { folder: "gateway", test: "full_interface", virtual_time: true },
     Test { folder: "gateway", test: "full_disk", virtual_time: true },
     Test { folder: "tools/cli", test: "controller", virtual_time: true },
+    Test { folder: "tools/cli", test: "network", virtual_time: true },
 ];
 
 /// How many checks [`run_all`] has, each test program counted as one.

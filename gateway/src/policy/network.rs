@@ -60,6 +60,8 @@ pub struct Network {
     map: Option<Terrain>,
     heights_m: Vec<f32>,
     fed: Vec<f32>,
+    /// When the window took its last frame.
+    fed_at: Option<SimTime>,
     /// When it was asked last, and what it wanted.
     last: Option<(SimTime, Command)>,
     reached: bool,
@@ -104,6 +106,7 @@ impl Network {
             map: map.filter(|_| sees_map).cloned(),
             heights_m: Vec::new(),
             fed: Vec::new(),
+            fed_at: None,
             last: None,
             reached: false,
         })
@@ -127,7 +130,7 @@ impl Network {
 
     /// What the network wants, given what it sees now and saw before; `None` where it does not see all that it must.
     fn asked(&mut self, seen: &Observation) -> Option<Command> {
-        if self.last.is_some_and(|(last, _)| seen.at.since(last) > FORGOTTEN) {
+        if self.fed_at.is_some_and(|fed_at| seen.at.since(fed_at) > FORGOTTEN) {
             self.window.clear();
         }
         self.heights_m.clear();
@@ -138,6 +141,7 @@ impl Network {
         if !self.window.take(&view, &mut self.fed) {
             return None;
         }
+        self.fed_at = Some(seen.at);
         let said = self.layers.forward(&self.fed);
         let mut action = Action::default();
         action.0.iter_mut().zip(said).for_each(|(number, said)| *number = f64::from(*said));
@@ -295,8 +299,13 @@ terms = [
         seen.attitude.roll_rad = 0.5;
         seen.at = SimTime::from_millis(125);
         near(said(&mut network, &seen), [0.2, 1.0, 4.0, -2.0, 0.2, 0.0, 0.0, 0.0]);
-        // After a second without being asked, what was before is no frame of the window.
-        seen.at = SimTime::from_millis(1125);
+        // After a second without a fix, what was before is no frame of the window.
+        let located = seen.located.take();
+        for at in (250..1100).step_by(125) {
+            seen.at = SimTime::from_millis(at);
+            assert_eq!(said(&mut network, &seen)[0], 0.0);
+        }
+        (seen.at, seen.located) = (SimTime::from_millis(1125), located);
         near(said(&mut network, &seen), [1.0, 1.0, 4.0, -2.0, 0.2, 0.0, 0.0, 0.0]);
         assert_eq!((network.pace(), network.outcome()), (Pace::Fix, Outcome::Running));
     }

@@ -1,5 +1,7 @@
 //! The hypotheses worth a fit: all are looked at on a coarse grid, the promising ones followed.
 
+mod jumped;
+
 use rayon::prelude::*;
 use xt28_sim::effects::{Effect, Parameter};
 
@@ -56,6 +58,7 @@ pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> 
         .flat_map_iter(|effect| first_look(evidence, effect))
         .filter(|start| start.gain > GAIN_MIN)
         .collect();
+    starts.extend(jumped::starts(evidence, effects));
     starts.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let followed = followed(&starts);
     let mut fits: Vec<Fit> = followed

@@ -4,6 +4,7 @@ mod command_period;
 mod made;
 mod motors;
 mod receiver;
+mod smoothed;
 mod uncut;
 
 use std::collections::BTreeMap;
@@ -17,7 +18,9 @@ use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 pub(in crate::diagnosis) use command_period::{PERIOD_S, command_periods_s};
 use made::Made;
 pub(in crate::diagnosis) use receiver::unwound;
-use uncut::{CUT_M, uncut};
+pub(in crate::diagnosis) use smoothed::{SMOOTHED, moving_mean, smooth};
+use smoothed::{Swing, slope, slope_over};
+use uncut::uncut;
 
 /// Time series by channel, as logs and replays have them.
 type AllSeries = BTreeMap<Channel, Series>;
@@ -58,6 +61,8 @@ pub struct Signals {
     pub smooth_stroke_m: PerWheel<Samples>,
     /// Slope of the smooth strokes.
     pub smooth_stroke_rate_m_s: PerWheel<Samples>,
+    /// When the reading of a stroke jumps, as no rod moves, s, by how much, m, and from what stroke, m.
+    pub stroke_jumps: PerWheel<Vec<[f64; 3]>>,
     /// Smooth wheel speeds, forward > 0.
     pub smooth_wheel_speed_rad_s: PerWheel<Samples>,
     /// Loads of the cylinders, from their pressures.
@@ -145,9 +150,8 @@ impl Signals {
         let mut target_stroke_m = wheels(Channel::TargetStroke);
         let is_arm_held =
             PerWheel::from_fn(|w| hold(&mut target_stroke_m[w], &stroke_reading_m[w]));
-        let smooth_stroke_m = PerWheel::from_fn(|w| {
-            smooth(&stroke_reading_m[w]).into_iter().map(|read| read + 0.5 * CUT_M).collect()
-        });
+        let swing =
+            PerWheel::from_fn(|w| Swing::new(&stroke_reading_m[w], &fresh(Channel::Stroke(w))));
         let wheel_speed_rad_s = wheels(Channel::WheelSpeed);
         let stroke_m = stroke_reading_m.clone().map(|reading| uncut(&reading));
         Ok(Self {
@@ -162,8 +166,9 @@ impl Signals {
             stroke_rate_m_s: PerWheel::from_fn(|w| slope(&stroke_m[w])),
             stroke_m,
             stroke_reading_m,
-            smooth_stroke_rate_m_s: PerWheel::from_fn(|w| slope_over(&smooth_stroke_m[w], 1)),
-            smooth_stroke_m,
+            stroke_jumps: PerWheel::from_fn(|w| swing[w].jumps().collect()),
+            smooth_stroke_rate_m_s: PerWheel::from_fn(|w| swing[w].rate_m_s()),
+            smooth_stroke_m: PerWheel::from_fn(|w| swing[w].stroke_m()),
             smooth_wheel_speed_rad_s: PerWheel::from_fn(|w| smooth(&wheel_speed_rad_s[w])),
             wheel_speed_rad_s,
             cylinder_load_n: wheels(Channel::CylinderLoad),
@@ -209,6 +214,11 @@ impl Signals {
     #[must_use]
     pub fn mean_wheel_speed_rad_s(&self, i: usize) -> f64 {
         self.wheel_speed_rad_s.iter().map(|(_, s)| s[i]).sum::<f64>() / 6.0
+    }
+
+    /// Whether the parking brake is to hold the machine at sample `i`; no, where nobody logged it.
+    pub(in crate::diagnosis) fn is_braked(&self, i: usize) -> bool {
+        self.brake.get(i).is_some_and(|on| *on != 0.0)
     }
 }
 
@@ -309,62 +319,12 @@ fn is_new(series: Option<&Series>, len: usize) -> Vec<bool> {
     new
 }
 
-/// Slope of a quantised reading over 0.2 s.
-fn slope(samples: &Samples) -> Samples {
-    slope_over(samples, 10)
-}
-
-/// Central difference over twice `half` samples, one-sided at the ends.
-#[allow(clippy::cast_precision_loss)]
-fn slope_over(samples: &Samples, half: usize) -> Samples {
-    let end = samples.len().saturating_sub(1);
-    (0..samples.len())
-        .map(|i| {
-            let (from, to) = (i.saturating_sub(half), (i + half).min(end));
-            if from == to {
-                0.0
-            } else {
-                (samples[to] - samples[from]) / ((to - from) as f64 * DT_S)
-            }
-        })
-        .collect()
-}
-
-/// Samples to either side that [`smooth`] looks at.
-pub(super) const SMOOTHED: usize = 30;
-
-/// What noise and steps of reading leave: a triangle of 0.6 s around each sample.
-#[must_use]
-pub(super) fn smooth(raw: &Samples) -> Samples {
-    moving_mean(&moving_mean(raw, 0.3), 0.3)
-}
-
 /// The value in the middle of all, the greater of the two in the middle; none of nothing.
 #[must_use]
 pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Samples = values.collect();
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-}
-
-/// Mean over `window_s` around each sample; shorter at the ends.
-#[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
-pub(super) fn moving_mean(samples: &[f64], window_s: f64) -> Samples {
-    let half = (0.5 * window_s / DT_S) as usize;
-    let mut sums = Vec::with_capacity(samples.len() + 1);
-    let mut sum = 0.0;
-    sums.push(sum);
-    for value in samples {
-        sum += value;
-        sums.push(sum);
-    }
-    (0..samples.len())
-        .map(|i| {
-            let (from, to) = (i.saturating_sub(half), (i + half + 1).min(samples.len()));
-            (sums[to] - sums[from]) / (to - from) as f64
-        })
-        .collect()
 }
 
 #[cfg(test)]
@@ -377,16 +337,5 @@ mod tests {
         let held = hold(&mut target_m, &vec![0.12, 0.13, 0.14, 0.15, 0.16]);
         assert_eq!(held, [false, true, true, false, true]);
         assert_eq!(target_m, [0.1, 0.13, 0.13, 0.2, 0.16]);
-    }
-
-    #[test]
-    fn a_moving_mean_keeps_a_line_and_flattens_a_spike() {
-        let line: Vec<f64> = (0..400).map(f64::from).collect();
-        let mean = moving_mean(&line, 1.0);
-        assert!((mean[200] - 200.0).abs() < 1e-9);
-        let mut spike = vec![0.0; 400];
-        spike[200] = 101.0;
-        assert!((moving_mean(&spike, 1.0)[180] - 1.0).abs() < 1e-9);
-        assert_eq!(moving_mean(&spike, 1.0)[100], 0.0);
     }
 }

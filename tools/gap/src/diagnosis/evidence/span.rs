@@ -6,13 +6,22 @@ use crate::diagnosis::signals::Signals;
 
 /// Length of the scripted test drives at most, s.
 const DRIVE_S: f64 = 33.0;
+/// A run shorter than this share of one is looked at more closely; as if it had the second at least.
+const SHORT: f64 = 0.75;
+const SHORTEST: f64 = 0.2;
 
 impl Evidence<'_> {
-    /// By how much the longest run is longer than a test drive; one where none is. Instants at which something may
-    /// set in lie as much further apart, so that they reach as far into it.
+    /// By how much the longest run is longer than a test drive, or shorter. Instants at which something may set in lie as
+    /// much further apart, so that they reach as far into it, or closer.
     pub(in crate::diagnosis) fn stretch(&self) -> f64 {
         let longest_s = self.runs.iter().map(Signals::duration_s).fold(0.0, f64::max);
-        (longest_s / DRIVE_S).max(1.0)
+        let drives = longest_s / DRIVE_S;
+        if drives < SHORT { drives.max(SHORTEST) } else { drives.max(1.0) }
+    }
+
+    /// The runs that it is evidence of.
+    pub(in crate::diagnosis) const fn runs(&self) -> &[Signals] {
+        self.runs
     }
 
     /// Starts of all runs but the first on the day, s of it; none where nobody knows which run was first.

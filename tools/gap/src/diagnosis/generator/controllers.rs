@@ -46,11 +46,18 @@ fn errors_of(
     let asked = steer_opening_asked(signals, machine, schedule, joint);
     let logged = &signals.steer_opening[joint];
     let cut: Samples = logged.iter().map(|opening| middle_of_cut(*opening, STEER_STEP)).collect();
-    [logged, &cut].map(|meant| error_of(signals, machine, [&asked, meant]))
+    let kinds = [(logged, 0.5 * STEER_STEP), (&cut, STEER_STEP)];
+    kinds.map(|(meant, unseen)| error_of(signals, machine, [&asked, meant], unseen))
 }
 
-/// What is asked less what is meant by the currents logged, sample by sample.
-fn error_of(signals: &Signals, machine: &Machine, [asked, meant]: [&Samples; 2]) -> Samples {
+/// What is asked less what is meant by the currents logged, sample by sample. Where there is none, anything up to
+/// `unseen` may be asked: near its target a joint is asked for less than a step for seconds, which is no noise.
+fn error_of(
+    signals: &Signals,
+    machine: &Machine,
+    [asked, meant]: [&Samples; 2],
+    unseen: f64,
+) -> Samples {
     let end = signals.len.saturating_sub(1);
     let threshold_m_s = machine.articulation.speed_threshold_m_s;
     let mut error = 0.0;
@@ -61,6 +68,9 @@ fn error_of(signals: &Signals, machine: &Machine, [asked, meant]: [&Samples; 2])
                 let least = near.iter().copied().fold(f64::INFINITY, f64::min);
                 let most = near.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 error = meant[i].clamp(least, most) - meant[i];
+                if meant[i] == 0.0 {
+                    error = (error.abs() - unseen).max(0.0).copysign(error);
+                }
             }
             let speed_m_s = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
             let starts =
@@ -192,6 +202,31 @@ mod tests {
         let mut effects = Effects::default();
         effects.steering.rear_follower.time_constant_s = time_constant_s;
         effects
+    }
+
+    #[test]
+    fn a_joint_that_is_asked_for_less_than_a_step_is_no_other_controller() {
+        let machine = Machine::xt28();
+        let mut s = still(20);
+        for w in Wheel::ALL {
+            s.wheel_speed_rad_s[w].fill(2.0);
+        }
+        s.is_fresh_drive_current.fill(true);
+        let per_rad = machine.articulation.kp_per_deg * 1_f64.to_degrees();
+        let left = |s: &Signals| {
+            let errors = steer_opening_error(s, &machine, (&Effects::default()).into(), 0);
+            errors.into_iter().filter(|e| !e.is_nan()).fold(0.0_f64, |most, e| most.max(e.abs()))
+        };
+        // Now to one side and now to the other, so that nothing is summed up.
+        let mut off = |steps: f64| {
+            for i in 0..s.len {
+                let side = if i % 200 < 100 { 1.0 } else { -1.0 };
+                s.joint_rad[0][i] = side * steps * STEER_STEP / per_rad;
+            }
+            left(&s)
+        };
+        let [little, much] = [0.4, 3.0].map(&mut off);
+        assert!(little == 0.0 && much > 1.5 * STEER_STEP, "{little} {much}");
     }
 
     /// Currents taken for cut off make up for a follower that is too quick.

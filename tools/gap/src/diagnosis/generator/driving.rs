@@ -164,7 +164,8 @@ fn force_error_nm(
                 let holds_nm = (drag_nm.abs() + idle_nm) * (1.0 - rolls.abs());
                 error = (apart.abs() - holds_nm).max(0.0).copysign(apart);
             }
-            error
+            // No log says what a parking brake takes.
+            if signals.is_braked(i) { 0.0 } else { error }
         })
         .collect();
     moving_mean(&errors, FORCE_S)
@@ -246,6 +247,22 @@ mod tests {
         assert!(sped_nm > 0.9 * sped, "{sped_nm} of {sped}");
         let lags_nm = left_behind_nm(2.0, -0.8, 5.0e3);
         assert!(lags_nm < 0.3 * braked, "{lags_nm} of {braked} behind a drive that lags");
+    }
+
+    #[test]
+    fn what_a_parking_brake_takes_is_no_torque_that_is_missing() {
+        let machine = Machine::xt28();
+        let largest_nm = |is_braked: bool| {
+            let mut s = still(10);
+            s.brake[500..].fill(f64::from(u8::from(is_braked)));
+            s.is_fresh_pump_pressure.fill(true);
+            // Pumps push against wheels that stand.
+            s.pump_pressure_pa[1][500..].fill(0.3 * PRESSURE_AT_TORQUE_MAX_PA);
+            let errors = drive_errors(&s, &machine, &Effects::default()).force_nm;
+            errors.iter().fold(0.0_f64, |most, nm| most.max(nm.abs()))
+        };
+        let [pushed, braked] = [false, true].map(largest_nm);
+        assert!(pushed > 500.0 && braked == 0.0, "{pushed} {braked}");
     }
 
     #[test]

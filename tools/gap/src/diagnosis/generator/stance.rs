@@ -88,6 +88,9 @@ const INNER_SHARES: [f64; 3] = [1.0, 0.5, 0.0];
 /// the labelled machines of a second plant (0.1 m/s at 10 kNm), or as in a rigid-body engine whose friction damps
 /// by 60 kN s/m below its cone.
 const CREEPS_M_S_N: [f64; 3] = [0.0, 7.0e-6, 1.7e-5];
+/// Roll against the ground from which wheels without give push against one another as hard as the ground grips, rad
+/// (assumed; how much wider the machine stands goes with the square).
+const ROLLED_RAD: f64 = 0.035;
 /// What nothing can be said of: the ground is not level, pressures do not say it, brakes hold wheels
 /// against their arms, the machine is on fewer than three wheels.
 const UNKNOWN: Error = Error {
@@ -248,6 +251,8 @@ fn judge(
             + 6.0 * parts.wheel.mass_kg
             + parts.arms.iter().map(|(_, a)| a.body.mass_kg).sum::<f64>());
     let mut weight = weigh(&feet, &layout, plane, parts.radius_m, lean, weight_n);
+    let wedged_m = wedged_m(machine, plane, left_rad);
+    weight[2] = (weight[2].abs() - wedged_m).max(0.0).copysign(weight[2]);
     let rolls = instant.wheels.iter().map(|(_, wheel)| wheel.rolls.abs()).sum::<f64>() / 6.0;
     weight[1] /= 1.0 + ROLLING_DOUBT * rolls;
     Some(Error {
@@ -256,6 +261,16 @@ fn judge(
         contact_m,
         lean_rad,
     })
+}
+
+/// How far the place of the weight may be moved aside by wheels that push against one another along the ground, m.
+///
+/// A machine that arms have rolled against its ground stands wider on it. Wheels that do not give way sideways then
+/// press the ground apart by up to what its grip holds, and on a cross slope those of one side do so higher than those
+/// of the other. No log says whether they do; standing as the ground does they do not.
+fn wedged_m(machine: &Machine, plane: Plane, left_rad: f64) -> f64 {
+    let rolled = (plane.slope_y / ROLLED_RAD).powi(2).min(1.0);
+    rolled * 0.5 * machine.wheels.friction * machine.wheels.track_m * left_rad.tan().abs()
 }
 
 /// Squares of what is left of weight and attitude, each in units of what it may be off.
@@ -344,6 +359,19 @@ mod tests {
             .into_iter()
             .map(|sway| sway / Signal::PitchSway.floor().sigma)
             .collect()
+    }
+
+    #[test]
+    fn wheels_push_against_one_another_where_arms_have_rolled_a_machine_on_a_cross_slope() {
+        let machine = Machine::xt28();
+        let of = |rolled: f64, left_rad: f64| {
+            wedged_m(&machine, Plane { slope_y: rolled, ..Plane::default() }, left_rad)
+        };
+        // Level on a cross slope, by the grip of half the weight on either side.
+        let most_m = 0.5 * machine.wheels.friction * machine.wheels.track_m * 0.087_f64.tan();
+        assert!((of(0.087, 0.087) - most_m).abs() < 1e-12 && of(-0.087, -0.087) == most_m);
+        assert_eq!([of(0.087, 0.0), of(0.0, 0.087)], [0.0; 2]);
+        assert!(of(0.005, 0.035) < 1e-3, "as a machine stands that nobody levels");
     }
 
     #[test]

@@ -12,6 +12,43 @@ const STAYS: usize = 40;
 const JUMP_M: f64 = 4.0e-3;
 const BESIDE: f64 = 0.34;
 
+/// Samples within which readings must have come before a jump: over a gap of a log a rod may move far.
+const LOGGED: usize = 5;
+
+/// Where readings change, and by how much they do there.
+struct Changes {
+    at: Vec<usize>,
+    by_m: Vec<f64>,
+}
+
+impl Changes {
+    fn of(reading: &Samples) -> Self {
+        let at: Vec<usize> = (1..reading.len()).filter(|i| reading[*i] != reading[i - 1]).collect();
+        let by_m = at.iter().map(|&i| reading[i] - reading[i - 1]).collect();
+        Self { at, by_m }
+    }
+
+    /// Whether change number `k` is a jump.
+    fn jumps(&self, k: usize) -> bool {
+        let by_m = |k: usize| self.by_m.get(k).map_or(0.0, |by_m| by_m.abs());
+        let beside_m = k.checked_sub(1).map_or(0.0, by_m).max(by_m(k + 1));
+        by_m(k) >= JUMP_M && beside_m < BESIDE * by_m(k)
+    }
+}
+
+/// By how much a reading has jumped by itself up to each sample, m. A reading came where `fresh` says so.
+pub(super) fn jumped_m(reading: &Samples, fresh: &[bool]) -> Samples {
+    let changes = Changes::of(reading);
+    let mut jumped_m = vec![0.0; reading.len()];
+    for (k, &i) in changes.at.iter().enumerate() {
+        let is_logged = fresh[i.saturating_sub(LOGGED)..i].iter().any(|fresh| *fresh);
+        if is_logged && changes.jumps(k) {
+            jumped_m[i..].iter_mut().for_each(|jumped_m| *jumped_m += changes.by_m[k]);
+        }
+    }
+    jumped_m
+}
+
 /// Strokes from readings that are cut off to whole millimetres. Between two readings that differ, the
 /// stroke has crossed the edges between them; from crossing to crossing it goes straight. A reading that jumps by
 /// itself, as that of a sensor that comes loose, does so at once.
@@ -26,16 +63,10 @@ pub(super) fn uncut(reading: &Samples) -> Samples {
         }
     };
     let mut since = 0;
-    let changes: Vec<usize> =
-        (1..reading.len()).filter(|i| reading[*i] != reading[i - 1]).collect();
-    let by_m = |k: usize| changes.get(k).map_or(0.0, |&i| (reading[i] - reading[i - 1]).abs());
-    let jumps = |k: usize| {
-        let beside_m = k.checked_sub(1).map_or(0.0, by_m).max(by_m(k + 1));
-        by_m(k) >= JUMP_M && beside_m < BESIDE * by_m(k)
-    };
-    for (k, &i) in changes.iter().enumerate() {
+    let changes = Changes::of(reading);
+    for (k, &i) in changes.at.iter().enumerate() {
         stay(&mut known, since, i, reading[i - 1]);
-        if jumps(k) {
+        if changes.jumps(k) {
             known.push((i as f64 - 1.0, middle(reading[i - 1])));
             known.push((i as f64, middle(reading[i])));
         } else {

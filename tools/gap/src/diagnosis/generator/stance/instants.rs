@@ -112,7 +112,7 @@ fn held_against_arms(s: &Signals) -> Vec<bool> {
     let (mut put_on_m, mut since) = (None, ROLLS_BACK);
     let step = |i: usize| {
         let stroke_m = PerWheel::from_fn(|w| s.smooth_stroke_m[w][i]);
-        if s.brake.get(i).is_some_and(|on| *on != 0.0) {
+        if s.is_braked(i) {
             let from_m: PerWheel<f64> = *put_on_m.get_or_insert(stroke_m);
             let swings = |w: Wheel| (stroke_m[w] - from_m[w]).abs() > SWINGS_M;
             if Wheel::ALL.into_iter().any(swings) {

@@ -8,6 +8,7 @@ mod config;
 mod effects;
 mod files;
 mod gap;
+mod ground;
 mod pace;
 #[cfg(target_os = "linux")]
 mod processes;

@@ -9,6 +9,7 @@ use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
 use crate::files::{no_input, writable};
+use crate::ground::Ground;
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -35,7 +36,7 @@ pub(crate) struct Replay {
     /// What solves the rigid bodies: `rapier`, the reference, or `reduced`, the fast core
     #[arg(long, default_value_t, value_name = "NAME")]
     solver: Solver,
-    /// Terrain file (TOML); else as about.toml says, else flat
+    /// Terrain file (TOML), or the scenario that the log is of; else as about.toml says, else flat
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
     /// What is known of the logs (TOML); about.toml beside the log, if there
@@ -86,7 +87,8 @@ impl Replay {
 
     fn ground(&self) -> Result<Terrain, Failure> {
         if let Some(path) = &self.terrain {
-            return Ok(Terrain::load(path)?);
+            let ground = Ground::find(Some(path))?;
+            return Ok(ground.map_or(Ok(Terrain::Flat), |ground| Terrain::load(ground.file()))?);
         }
         let beside = self.log.parent().unwrap_or(Path::new("")).join("about.toml");
         if let Some(path) = &self.about {

@@ -4,8 +4,6 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use xt28_scenarios::Scenario;
-
 fn xt28(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_xt28")).args(arguments).output().unwrap()
 }
@@ -13,17 +11,14 @@ fn xt28(arguments: &[&str]) -> Output {
 /// What the diagnosis of the log of `scenario` says in JSON, driven by `policy` where one is given.
 fn diagnosed(scenario: &str, policy: Option<&str>) -> serde_json::Value {
     let folder = tempfile::tempdir().unwrap();
-    let [log, terrain, json] =
-        ["run.log", "terrain.toml", "said.json"].map(|name| folder.path().join(name));
-    let [log, terrain, json] = [&log, &terrain, &json].map(|path| path.to_str().unwrap());
-    let ground = Scenario::find(scenario).unwrap().terrain.spec;
-    std::fs::write(terrain, ground.to_toml().unwrap()).unwrap();
+    let [log, json] = ["run.log", "said.json"].map(|name| folder.path().join(name));
+    let [log, json] = [&log, &json].map(|path| path.to_str().unwrap());
     let mut run = vec!["run", scenario, "--record", log];
     run.extend(policy.into_iter().flat_map(|policy| ["--policy", policy]));
     assert!(xt28(&run).status.success(), "{scenario}");
     let dbc = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../dbc/xt28.dbc");
     let mut diagnose = vec!["gap", "diagnose", log, "--dbc", dbc.to_str().unwrap()];
-    diagnose.extend(["--terrain", terrain, "--no-how-far", "--json", json]);
+    diagnose.extend(["--terrain", scenario, "--no-how-far", "--json", json]);
     let output = xt28(&diagnose);
     let said = std::fs::read_to_string(json);
     let said = said.unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr)));

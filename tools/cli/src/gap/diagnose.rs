@@ -17,6 +17,7 @@ use super::about;
 use super::drive::{ensure_free, script_beside, write_drive};
 use super::remarks::{Given, remarks};
 use crate::files::{Outputs, write};
+use crate::ground::Ground;
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -49,7 +50,7 @@ pub(crate) struct Diagnose {
     /// Effects that one knows the machine to have (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// Terrain file (TOML) of all runs, instead of what about.toml says
+    /// Terrain file (TOML) of all runs, or the scenario that they are of, instead of what about.toml says
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
     /// What is known of the logs (TOML); about.toml beside the first log, if there
@@ -147,7 +148,8 @@ impl Diagnose {
         let believed =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let about = about(&self.logs, self.about.as_ref())?;
-        let (is_asked, terrain) = (self.about.is_some(), self.terrain.as_deref());
+        let ground = Ground::find(self.terrain.as_deref())?;
+        let (is_asked, terrain) = (self.about.is_some(), ground.as_ref().map(Ground::file));
         let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         bar.suspend(|| set.warnings().iter().for_each(|warning| eprintln!("{warning}")));

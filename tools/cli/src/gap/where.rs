@@ -14,6 +14,7 @@ use xt28_sim::effects::Overlay;
 
 use super::about;
 use super::remarks::{Given, remarks};
+use crate::ground::Ground;
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -47,7 +48,7 @@ pub(crate) struct Where {
     /// Effects that our machine gets (TOML; see `xt28 effects`)
     #[arg(long, value_name = "FILE")]
     effects: Option<PathBuf>,
-    /// Terrain file (TOML) of all runs, instead of what about.toml says
+    /// Terrain file (TOML) of all runs, or the scenario that they are of, instead of what about.toml says
     #[arg(long, value_name = "FILE")]
     terrain: Option<PathBuf>,
     /// What is known of the logs (TOML), foremost their ground; about.toml beside the first log, if
@@ -74,7 +75,8 @@ impl Where {
         let effects =
             self.effects.as_deref().map_or_else(|| Ok(Overlay::default()), Overlay::load)?;
         let about = about(&self.logs, self.about.as_ref())?;
-        let (is_asked, terrain) = (self.about.is_some(), self.terrain.as_deref());
+        let ground = Ground::find(self.terrain.as_deref())?;
+        let (is_asked, terrain) = (self.about.is_some(), ground.as_ref().map(Ground::file));
         let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
         let machine_file = self.machine.as_deref();

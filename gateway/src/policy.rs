@@ -1,5 +1,6 @@
 //! Where demands come from: one trait, and the policies that think here.
 
+mod arrival;
 mod external;
 mod goto;
 mod hold;
@@ -30,6 +31,11 @@ pub use spec::{SpecError, files_of, from_spec};
 pub trait Policy: Send {
     /// When it wants to be asked.
     fn pace(&self) -> Pace;
+
+    /// Whether it can do nothing without a receiver.
+    fn needs_fixes(&self) -> bool {
+        self.pace() == Pace::Fix
+    }
 
     /// What it wants, given what it sees. Also asked while not armed
     /// (`since_arming_s` is `None`), so that its first armed answer is not its first. `None` from one

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use gateway::policy::Account;
 use gateway::{
-    Gateway, GatewayConfig, Listen, Order, Outcome, Pace, Phase, Policy, Reason, Remote, Status,
+    Gateway, GatewayConfig, Listen, Order, Outcome, Phase, Policy, Reason, Remote, Status,
 };
 use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use xt28_dbc::Outbox;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<(Finished, Announcer), Problem> {
             SerialPort::open(path)
                 .map_err(|source| Problem::OpenGnss { path: path.clone(), source })?,
         ),
-        None if policy.pace() == Pace::Fix => return Err(Problem::NoGnss),
+        None if policy.needs_fixes() => return Err(Problem::NoGnss),
         None => None,
     };
     let interrupt = watch_signals().map_err(Problem::Signals)?;

@@ -33,6 +33,20 @@ fn a_policy_that_does_not_exist_or_lacks_its_receiver() {
 }
 
 #[test]
+fn a_network_that_sees_its_goal_needs_a_receiver_at_any_rate() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = |name: &str| format!("{}/examples/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::copy(example("imitated.safetensors"), folder.path().join("imitated.safetensors"))
+        .unwrap();
+    let text = std::fs::read_to_string(example("imitated.toml")).unwrap();
+    let file = folder.path().join("ticked.toml");
+    std::fs::write(&file, text.replace("rate = \"fix\"", "rate = 50")).unwrap();
+    let policy = format!("network:{}@25,0,0", file.display());
+    let error = refusal(&["--bus", "can99", "--policy", &policy]);
+    assert!(error.contains("--gnss"), "{error}");
+}
+
+#[test]
 fn a_machine_file_with_an_unknown_key() {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), "[masses]\narm_lb = 441.0\n").unwrap();

@@ -8,6 +8,7 @@
 use xt28_machine::{Machine, SimTime};
 use xt28_safety::{Arms, Command};
 
+use super::arrival::{Standstill, judge, too_far};
 use super::levelling::Levelling;
 use super::path::{Path, Point};
 use super::pose_filter::PoseFilter;
@@ -40,12 +41,6 @@ const LATERAL_GAIN_PER_M2: f64 = 0.12;
 const HEADING_GAIN_PER_M: f64 = 0.7;
 /// Share of the tightest curve that planning may use; the rest is left to feedback.
 const PLANNABLE: f64 = 0.9;
-/// The furthest goal of one drive, m (assumed): further away is another site's, or another origin's.
-const GOAL_MAX_M: f64 = 300.0;
-/// Slower than this is standing, m/s.
-const STANDING_M_S: f64 = 0.03;
-/// Standing this long ends a drive, s.
-const STANDING_S: f64 = 1.0;
 /// Less than this along the path counts as no progress, m, and so long without any ends a drive, s
 /// (assumed: at the creeping speed it is half a second's way).
 const PROGRESS_M: f64 = 0.1;
@@ -74,8 +69,8 @@ enum Stage {
     Waiting,
     /// On the way; metres covered along the path, and where and when it last got on.
     Driving { path: Path, along_m: f64, got_on: Option<(f64, SimTime)> },
-    /// Throttle let go; since when it stands, if it does.
-    Stopping { since: Option<SimTime> },
+    /// Throttle let go, until it stands.
+    Stopping(Standstill),
     /// Standing for good.
     Ended(Outcome),
 }
@@ -112,7 +107,7 @@ impl Goto {
         let curvature =
             curvature_per_m(path.curvature_per_m(on_path.along_m + preview_m), &on_path, pose);
         if left_m <= speed * DRIVE_DELAY_S {
-            self.stage = Stage::Stopping { since: None };
+            self.stage = Stage::Stopping(Standstill::default());
             return (0.0, seen.front_joint_rad);
         }
         let after_delay_m = (left_m - speed * DRIVE_DELAY_MAX_S).max(0.0);
@@ -133,13 +128,9 @@ impl Goto {
             Stage::Waiting if seen.since_arming_s.is_some() => {
                 self.stage = self.depart(pose);
             }
-            Stage::Stopping { since } => {
-                let standing = seen.wheel_speed_m_s.abs() < STANDING_M_S;
-                let start = *since.get_or_insert(seen.at);
-                if !standing {
-                    *since = None;
-                } else if seen.at.since(start).as_secs_f64() >= STANDING_S {
-                    self.stage = Stage::Ended(self.judge(pose));
+            Stage::Stopping(standstill) => {
+                if standstill.is_over(seen) {
+                    self.stage = Stage::Ended(judge(pose, &self.goal));
                 }
             }
             Stage::Driving { along_m, got_on, .. } => {
@@ -158,15 +149,11 @@ impl Goto {
 
     fn depart(&self, from: &Pose) -> Stage {
         let tightest = PLANNABLE * self.steering.curvature_max_per_m();
-        if self.judge(from) == Outcome::Reached {
+        if judge(from, &self.goal) == Outcome::Reached {
             return Stage::Ended(Outcome::Reached);
         }
-        let away_m = (self.goal.east_m - from.east_m).hypot(self.goal.north_m - from.north_m);
-        if away_m > GOAL_MAX_M {
-            return Stage::Ended(Outcome::Failed(format!(
-                "the goal is {away_m:.0} m from the machine, and one drive goes {GOAL_MAX_M} m at most; \
-                 is the origin that its coordinates count from (--origin) where the machine is?"
-            )));
+        if let Some(failed) = too_far(from, &self.goal) {
+            return Stage::Ended(failed);
         }
         match Path::plan(from, &self.goal, tightest) {
             Some(path) => Stage::Driving { path, along_m: 0.0, got_on: None },
@@ -176,16 +163,6 @@ impl Goto {
                 1.0 / tightest
             ))),
         }
-    }
-
-    fn judge(&self, pose: &Pose) -> Outcome {
-        let [ahead_m, left_m, turn_rad] = pose.to_local(&self.goal);
-        let distance_m = ahead_m.hypot(left_m);
-        if distance_m <= REACHED_DISTANCE_M && turn_rad.abs() <= REACHED_HEADING_RAD {
-            return Outcome::Reached;
-        }
-        let turn_deg = turn_rad.to_degrees();
-        Outcome::Failed(format!("stopped {distance_m:.2} m and {turn_deg:.1} deg from the goal"))
     }
 }
 

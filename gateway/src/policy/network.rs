@@ -20,6 +20,8 @@
 //! not fit its file is refused before anything moves. Eight numbers come out, an [`Action`].
 
 mod layers;
+#[cfg(test)]
+mod made_up;
 mod policy_file;
 mod rate;
 mod term;
@@ -32,7 +34,8 @@ use xt28_machine::{Machine, SimTime};
 use xt28_safety::{Arms, Command, Limits};
 use xt28_terrain::Terrain;
 
-use super::{Outcome, Pace, Policy, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
+use super::arrival::{Standstill, judge, too_far};
+use super::{Outcome, Pace, Policy};
 use crate::heights::read_heights;
 use crate::{Action, ActionMap, Observation, Pose};
 
@@ -44,11 +47,12 @@ use window::Window;
 
 pub use policy_file::NetworkError;
 
-/// What was seen longer ago is no frame of a window any more: after so long the safety kernel has stopped the machine.
+/// What was seen longer ago is no frame of a window any more: after so long without an answer the safety kernel has
+/// stopped the machine.
 const FORGOTTEN: Duration = Duration::from_nanos(Limits::XT28.observation.span_ns());
 
-/// A learnt policy. Where it sees a goal its task ends within 0.3 m and 9 degrees of it (paper 4.2), and it holds
-/// there; else it has no end.
+/// A learnt policy. Where it sees a goal its task ends within 0.3 m and 9 degrees of it (paper 4.2): it lets the machine
+/// come to a stop, and has reached its goal if that is there. Else it has no end.
 #[derive(Clone, Debug)]
 pub struct Network {
     window: Window,
@@ -62,9 +66,21 @@ pub struct Network {
     fed: Vec<f32>,
     /// When the window took its last frame.
     fed_at: Option<SimTime>,
-    /// When it was asked last, and what it wanted.
-    last: Option<(SimTime, Command)>,
-    reached: bool,
+    /// When it was asked last.
+    asked_at: Option<SimTime>,
+    /// Whether something moved then.
+    was_armed: bool,
+    stage: Stage,
+}
+
+#[derive(Clone, Debug)]
+enum Stage {
+    /// The network has the word.
+    Driving,
+    /// At the goal, throttle let go, until it stands; the front joint stays as it was.
+    Stopping { standstill: Standstill, joint_rad: f64 },
+    /// Standing for good.
+    Ended { outcome: Outcome, joint_rad: f64 },
 }
 
 impl Network {
@@ -107,8 +123,9 @@ impl Network {
             heights_m: Vec::new(),
             fed: Vec::new(),
             fed_at: None,
-            last: None,
-            reached: false,
+            asked_at: None,
+            was_armed: false,
+            stage: Stage::Driving,
         })
     }
 
@@ -119,25 +136,42 @@ impl Network {
         [Some(path.to_owned()), weights].into_iter().flatten().collect()
     }
 
-    /// Whether the machine is where it is to be.
-    fn is_there(&self, seen: &Observation) -> bool {
-        let (Some(goal), Some(located)) = (&self.goal, &seen.located) else { return false };
-        let [ahead_m, left_m, turn_rad] = located.pose.to_local(goal);
-        seen.since_arming_s.is_some()
-            && ahead_m.hypot(left_m) <= REACHED_DISTANCE_M
-            && turn_rad.abs() <= REACHED_HEADING_RAD
+    /// Moves on to the stage that fits what is seen.
+    fn advance(&mut self, seen: &Observation) {
+        let (Some(goal), Some(located)) = (&self.goal, &seen.located) else { return };
+        let joint_rad = seen.front_joint_rad;
+        match &mut self.stage {
+            Stage::Driving if seen.since_arming_s.is_some() => {
+                if let Some(outcome) = too_far(&located.pose, goal) {
+                    self.stage = Stage::Ended { outcome, joint_rad };
+                } else if judge(&located.pose, goal) == Outcome::Reached {
+                    self.stage = Stage::Stopping { standstill: Standstill::default(), joint_rad };
+                }
+            }
+            Stage::Stopping { standstill, joint_rad } => {
+                if standstill.is_over(seen) {
+                    let (outcome, joint_rad) = (judge(&located.pose, goal), *joint_rad);
+                    self.stage = Stage::Ended { outcome, joint_rad };
+                }
+            }
+            Stage::Driving | Stage::Ended { .. } => {}
+        }
     }
 
     /// What the network wants, given what it sees now and saw before; `None` where it does not see all that it must.
     fn asked(&mut self, seen: &Observation) -> Option<Command> {
-        if self.fed_at.is_some_and(|fed_at| seen.at.since(fed_at) > FORGOTTEN) {
+        // Until something moves every time is the beginning of a drive, as is the first time after that.
+        let begins = seen.since_arming_s.is_none() || !self.was_armed;
+        self.was_armed = seen.since_arming_s.is_some();
+        if begins || self.fed_at.is_some_and(|fed_at| seen.at.since(fed_at) > FORGOTTEN) {
             self.window.clear();
         }
         self.heights_m.clear();
         if let (Some(map), Some(located)) = (&self.map, &seen.located) {
             read_heights(map, &located.pose, &mut self.heights_m);
         }
-        let view = View { seen, goal: self.goal, heights_m: &self.heights_m };
+        let previous_action = if begins { Action::default() } else { seen.previous_action };
+        let view = View { seen, goal: self.goal, heights_m: &self.heights_m, previous_action };
         if !self.window.take(&view, &mut self.fed) {
             return None;
         }
@@ -154,125 +188,55 @@ impl Policy for Network {
         self.rate.pace()
     }
 
+    fn needs_fixes(&self) -> bool {
+        self.rate == Rate::Fix || self.window.terms().any(Term::needs_fix)
+    }
+
+    /// `None` between two times that it is asked, and where it does not see all that it must: its last answer gets old
+    /// then, and the safety kernel stops the machine.
     fn act(&mut self, seen: &Observation) -> Option<Command> {
-        self.reached |= self.is_there(seen);
-        if let Some((last, command)) = self.last
-            && !self.reached
-            && !self.rate.is_due(Some(last), seen.at)
-        {
-            return Some(command);
+        self.advance(seen);
+        let arms = Arms::Position([None; 6]);
+        let hold =
+            |front_angle_rad, brake| Some(Command { throttle: 0.0, front_angle_rad, arms, brake });
+        match self.stage {
+            Stage::Stopping { joint_rad, .. } => hold(joint_rad, false),
+            Stage::Ended { joint_rad, .. } => hold(joint_rad, true),
+            Stage::Driving if self.rate.is_due(self.asked_at, seen.at) => {
+                self.asked_at = Some(seen.at);
+                self.asked(seen)
+            }
+            Stage::Driving => None,
         }
-        let hold = Command {
-            throttle: 0.0,
-            front_angle_rad: seen.front_joint_rad,
-            arms: Arms::Position([None; 6]),
-            brake: self.reached,
-        };
-        let wanted = if self.reached { None } else { self.asked(seen) };
-        let command = wanted.unwrap_or(hold);
-        self.last = Some((seen.at, command));
-        Some(command)
     }
 
     fn outcome(&self) -> Outcome {
-        match (self.goal, self.reached) {
+        match (self.goal, &self.stage) {
             (None, _) => Outcome::Endless,
-            (Some(_), false) => Outcome::Running,
-            (Some(_), true) => Outcome::Reached,
+            (_, Stage::Ended { outcome, .. }) => outcome.clone(),
+            (Some(_), Stage::Driving | Stage::Stopping { .. }) => Outcome::Running,
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use xt28_machine::PerWheel;
-
+    use super::made_up::{FILE, file, seen, tensor};
     use super::*;
-    use crate::{Attitude, Located};
-
-    /// Every term by its name.
-    pub(super) const ALL: [&str; 13] = [
-        "goal_m",
-        "goal_heading_rad",
-        "velocity_m_s",
-        "speed_m_s",
-        "roll_rad",
-        "pitch_rad",
-        "stroke_m",
-        "load_n",
-        "wheel_speed_rad_s",
-        "front_joint_rad",
-        "rear_joint_rad",
-        "previous_action",
-        "height_map_m",
-    ];
-
-    /// One layer of five numbers, of which the second frame's roll is the last before the goal.
-    pub(super) const FILE: &str = r#"weights = "w.safetensors"
-layers = ["0"]
-activation = "tanh"
-squash = "none"
-rate = "fix"
-
-[[input]]
-frames = 2
-newest = "last"
-terms = [
-    { name = "roll_rad", scale = 10, clip = 1 },
-]
-
-[[input]]
-terms = [
-    { name = "goal_m", scale = [1.0, 2.0], clip = 5 },
-    { name = "goal_heading_rad" },
-]
-"#;
-
-    /// Name, shape and numbers of a tensor.
-    pub(super) fn tensor(
-        name: &str,
-        shape: &[usize],
-        numbers: &[f32],
-    ) -> (String, Vec<usize>, Vec<u8>) {
-        let bytes = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-        (name.to_owned(), shape.to_vec(), bytes)
-    }
-
-    /// A safetensors file of `tensors`.
-    pub(super) fn file(tensors: &[(String, Vec<usize>, Vec<u8>)]) -> Vec<u8> {
-        let views = tensors.iter().map(|(name, shape, bytes)| {
-            let view =
-                safetensors::tensor::TensorView::new(safetensors::Dtype::F32, shape.clone(), bytes);
-            (name.as_str(), view.unwrap())
-        });
-        safetensors::serialize(views, None).unwrap()
-    }
-
-    /// A machine that stands at the origin, heads east and is armed.
-    pub(super) fn seen() -> Observation {
-        let wheels = PerWheel([0.10, 0.11, 0.12, 0.13, 0.14, 0.15]);
-        Observation {
-            at: SimTime::ZERO,
-            sensed_at: SimTime::ZERO,
-            since_arming_s: Some(1.0),
-            located: Some(Located::default()),
-            attitude: Attitude::default(),
-            stroke_m: wheels,
-            load_n: wheels,
-            wheel_speed_rad_s: wheels,
-            wheel_speed_m_s: 0.0,
-            front_joint_rad: 0.05,
-            rear_joint_rad: 0.0,
-            previous_action: Action::default(),
-        }
-    }
+    use crate::Located;
 
     /// Loads the policy file `text`, whose layer passes what it is fed with on to the first five numbers of an action.
     fn load(text: &str, goal: Option<Pose>) -> Result<Network, NetworkError> {
+        load_wide(text, 5, goal)
+    }
+
+    /// The same of a layer that is fed with `width` numbers, of which it passes on five that are as far apart as can be.
+    fn load_wide(text: &str, width: usize, goal: Option<Pose>) -> Result<Network, NetworkError> {
         let folder = tempfile::tempdir().unwrap();
-        let mut weights = [0.0; 40];
-        (0..5).for_each(|k| weights[6 * k] = 1.0);
-        let weights = [tensor("0.weight", &[8, 5], &weights), tensor("0.bias", &[8], &[0.0; 8])];
+        let mut weights = vec![0.0; 8 * width];
+        (0..5).for_each(|k| weights[k * width + k * (width - 1) / 4] = 1.0);
+        let weights =
+            [tensor("0.weight", &[8, width], &weights), tensor("0.bias", &[8], &[0.0; 8])];
         std::fs::write(folder.path().join("w.safetensors"), file(&weights)).unwrap();
         let path = folder.path().join("p.toml");
         std::fs::write(&path, text).unwrap();
@@ -299,11 +263,11 @@ terms = [
         seen.attitude.roll_rad = 0.5;
         seen.at = SimTime::from_millis(125);
         near(said(&mut network, &seen), [0.2, 1.0, 4.0, -2.0, 0.2, 0.0, 0.0, 0.0]);
-        // After a second without a fix, what was before is no frame of the window.
+        // After a second without a fix, in which it says nothing, what was before is no frame of the window.
         let located = seen.located.take();
         for at in (250..1100).step_by(125) {
             seen.at = SimTime::from_millis(at);
-            assert_eq!(said(&mut network, &seen)[0], 0.0);
+            assert_eq!(network.act(&seen), None);
         }
         (seen.at, seen.located) = (SimTime::from_millis(1125), located);
         near(said(&mut network, &seen), [1.0, 1.0, 4.0, -2.0, 0.2, 0.0, 0.0, 0.0]);
@@ -311,38 +275,78 @@ terms = [
     }
 
     #[test]
-    fn between_two_times_that_it_is_asked_its_answer_holds() {
-        let mut network = load(&FILE.replace("\"fix\"", "10"), GOAL).unwrap();
-        assert_eq!(network.pace(), Pace::Tick);
-        let mut seen = seen();
-        let mut rolls = Vec::new();
-        for tick in 0..25 {
-            seen.at = SimTime::from_millis(10 * tick);
-            seen.attitude.roll_rad = 1e-3 * tick as f64;
-            rolls.push((100.0 * said(&mut network, &seen)[1]).round());
-        }
-        assert!(rolls[..10].iter().all(|roll| *roll == 0.0), "{rolls:?}");
-        assert!(rolls[10..20].iter().all(|roll| *roll == 10.0), "{rolls:?}");
+    fn a_drive_begins_without_a_past() {
+        let text = FILE.replace("roll_rad\", scale = 10, clip = 1", "previous_action\"");
+        let text = text.replace("    { name = \"goal_m\", scale = [1.0, 2.0], clip = 5 },\n", "");
+        let mut network = load_wide(&text, 17, GOAL).unwrap();
+        let mut seen = Observation { previous_action: Action([0.5; 8]), ..seen() };
+        let mut older_and_newer = |at_ms: u64, since_arming_s: Option<f64>| {
+            (seen.at, seen.since_arming_s) = (SimTime::from_millis(at_ms), since_arming_s);
+            let said = said(&mut network, &seen);
+            [said[0], said[2]].map(|number| (1e9 * number).round() / 1e9)
+        };
+        assert_eq!(older_and_newer(0, None), [0.0; 2]);
+        assert_eq!(older_and_newer(125, Some(0.0)), [0.0; 2]);
+        assert_eq!(older_and_newer(250, Some(0.125)), [0.0, 0.5]);
+        assert_eq!(older_and_newer(375, Some(0.25)), [0.5; 2]);
+        assert_eq!(older_and_newer(500, None), [0.0; 2], "stopped");
     }
 
     #[test]
-    fn it_holds_where_it_does_not_see_all_that_it_must_and_at_its_goal() {
-        let mut network = load(FILE, GOAL).unwrap();
+    fn it_answers_as_often_as_it_is_asked() {
+        let mut network = load(&FILE.replace("\"fix\"", "10"), GOAL).unwrap();
+        assert!(network.pace() == Pace::Tick && network.needs_fixes());
         let mut seen = seen();
-        seen.located = None;
-        let hold = network.act(&seen).unwrap();
-        assert_eq!((hold.throttle, hold.front_angle_rad, hold.brake), (0.0, 0.05, false));
-        let pose = Pose { east_m: 3.9, north_m: -0.8, heading_rad: 0.1 };
-        seen.located = Some(Located { pose, ..Located::default() });
-        seen.since_arming_s = None;
-        assert!(!network.act(&seen).unwrap().brake, "nothing moves yet");
-        seen.since_arming_s = Some(9.0);
-        let command = network.act(&seen).unwrap();
-        assert_eq!((command.throttle, command.brake), (0.0, true));
-        assert_eq!(network.outcome(), Outcome::Reached);
-        // It stays there.
-        seen.located = Some(Located::default());
-        assert!(network.act(&seen).unwrap().brake);
+        let answered: Vec<u64> = (0..25)
+            .filter(|tick| {
+                seen.at = SimTime::from_millis(10 * tick);
+                network.act(&seen).is_some()
+            })
+            .collect();
+        assert_eq!(answered, [0, 10, 20]);
+    }
+
+    /// Drives at 0.8 m/s until told, and stands then.
+    fn seen_at(pose: Pose, at_ms: u64, speed_m_s: f64) -> Observation {
+        let located = Some(Located { pose, ..Located::default() });
+        Observation {
+            at: SimTime::from_millis(at_ms),
+            located,
+            wheel_speed_m_s: speed_m_s,
+            ..seen()
+        }
+    }
+
+    #[test]
+    fn a_goal_is_reached_where_the_machine_stands_there() {
+        let near = Pose { east_m: 3.9, north_m: -0.8, heading_rad: 0.1 };
+        let beyond = Pose { east_m: 5.2, ..near };
+        for (ends_at, outcome) in [(near, "reached"), (beyond, "failed")] {
+            let mut network = load(FILE, GOAL).unwrap();
+            let unarmed = Observation { since_arming_s: None, ..seen_at(near, 0, 0.8) };
+            assert!(network.act(&unarmed).is_some(), "nothing moves yet");
+            assert_eq!(network.outcome(), Outcome::Running);
+            let mut seen = seen_at(near, 125, 0.8);
+            let command = network.act(&seen).unwrap();
+            assert_eq!((command.throttle, command.brake), (0.0, false), "it still rolls");
+            assert_eq!(network.outcome(), Outcome::Running);
+            // The joint stays where it was as the goal came near.
+            seen = Observation { front_joint_rad: 0.3, ..seen_at(ends_at, 250, 0.0) };
+            assert_eq!(network.act(&seen).unwrap().front_angle_rad, 0.05);
+            let command = network.act(&seen_at(ends_at, 1250, 0.0)).unwrap();
+            assert!(command.brake && network.outcome().name() == outcome, "{outcome}");
+            // It stays there.
+            assert!(network.act(&seen_at(Pose::default(), 1375, 0.0)).unwrap().brake);
+        }
+    }
+
+    #[test]
+    fn no_network_drives_to_a_goal_of_another_site() {
+        let away = Some(Pose { east_m: 9e5, ..Pose::default() });
+        let mut network = load(FILE, away).unwrap();
+        assert!(network.act(&seen()).unwrap().brake);
+        let Outcome::Failed(why) = network.outcome() else { panic!("it is too far") };
+        assert!(why.contains("900000 m from the machine") && why.contains("--origin"), "{why}");
     }
 
     #[test]

@@ -95,9 +95,14 @@ pub fn files_of(spec: &str) -> Vec<PathBuf> {
 /// The file of a network, and its goal: names of files may have an `@` as well.
 fn network_parts(network: &str) -> (&str, Option<&str>) {
     match network.rsplit_once('@') {
-        Some((file, goal)) if !goal.ends_with(".toml") => (file, Some(goal)),
+        Some((file, goal)) if !goal.contains('/') && !is_policy_file(goal) => (file, Some(goal)),
         _ => (network, None),
     }
+}
+
+/// Whether a name is that of a policy file, as far as a name says.
+fn is_policy_file(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }
 
 /// No goal is further from its origin, m: nothing on the ground is.
@@ -122,7 +127,9 @@ mod tests {
     fn a_network_has_its_goal_behind_its_file() {
         assert_eq!(network_parts("a@b/p.toml@25,0,0"), ("a@b/p.toml", Some("25,0,0")));
         assert_eq!(network_parts("a@b/p.toml"), ("a@b/p.toml", None));
-        assert_eq!(network_parts("p@2.toml"), ("p@2.toml", None));
+        for name in ["p@2.toml", "p@2.TOML", "a@b/policy"] {
+            assert_eq!(network_parts(name), (name, None));
+        }
     }
 
     #[test]

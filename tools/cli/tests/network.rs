@@ -85,6 +85,9 @@ fn what_does_not_fit_is_refused_before_anything_is_driven() {
     fs::write(&policy_file, text.replace("    { name = \"roll_rad\"", "    # {")).unwrap();
     let error = straight(&goal);
     assert!(error.contains("0.weight takes 5 numbers") && error.contains("are 4;"), "{error}");
+    let latin: Vec<u8> = text.bytes().chain(*b"# \xe9\n").collect();
+    fs::write(&policy_file, latin).unwrap();
+    assert!(straight(&goal).contains("imitated.toml:15: no UTF-8"), "{}", straight(&goal));
     // A log must not cost a policy.
     fs::write(&policy_file, &text).unwrap();
     for file in [&policy_file, &weights] {

@@ -5,6 +5,10 @@ use std::collections::BTreeSet;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use serde::Deserialize;
+use xt28_rosbridge::printable;
+
+/// Most weights of a network: some 2 ms of a tick of 10 ms (measured by hand: 27 ms for 49 million).
+const SIZE_MAX: usize = 4_000_000;
 
 /// What each layer but the last does to its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -49,7 +53,9 @@ impl Activation {
         match self {
             Self::Elu if x < 0.0 => libm::expm1f(x),
             Self::Elu => x,
-            Self::Relu => x.max(0.0),
+            // What is no number stays none.
+            Self::Relu if x < 0.0 => 0.0,
+            Self::Relu => x,
             Self::Silu => x / (1.0 + libm::expf(-x)),
             Self::Tanh => libm::tanhf(x),
         }
@@ -69,7 +75,7 @@ impl Layers {
         (activation, squash): (Activation, Squash),
     ) -> Result<Self, String> {
         let file = SafeTensors::deserialize(bytes)
-            .map_err(|error| format!("no safetensors file: {error}"))?;
+            .map_err(|error| printable(&format!("no safetensors file: {error}")))?;
         let mut layers: Vec<Layer> = Vec::new();
         let mut fed_by = ("what the [[input]] tables come to".to_owned(), inputs);
         for name in names {
@@ -82,6 +88,12 @@ impl Layers {
             }
             fed_by = (format!("those that {name} gives"), layer.bias.len());
             layers.push(layer);
+        }
+        let weights: usize = layers.iter().map(|layer| layer.weights.len()).sum();
+        if weights > SIZE_MAX {
+            return Err(format!(
+                "{weights} weights are too many for a tick of 10 ms; {SIZE_MAX} at most"
+            ));
         }
         if fed_by.1 != outputs {
             let [said, given] = [&fed_by.0, &fed_by.1.to_string()];
@@ -139,7 +151,8 @@ fn numbers(file: &SafeTensors<'_>, name: &str) -> Result<(Vec<usize>, Vec<f32>),
     let tensor: TensorView<'_> = file.tensor(name).map_err(|_| {
         let all: BTreeSet<&str> = file.names().into_iter().collect();
         let all: Vec<&str> = all.into_iter().take(12).collect();
-        format!("no tensor {name}; there are {}", all.join(", "))
+        let there = if all.is_empty() { "none".to_owned() } else { printable(&all.join(", ")) };
+        format!("no tensor {name}; there are {there}")
     })?;
     if tensor.dtype() != Dtype::F32 {
         let kind = tensor.dtype();
@@ -160,7 +173,7 @@ fn numbers(file: &SafeTensors<'_>, name: &str) -> Result<(Vec<usize>, Vec<f32>),
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{file, tensor};
+    use super::super::made_up::{file, tensor};
     use super::*;
 
     const PLAIN: (Activation, Squash) = (Activation::Relu, Squash::None);
@@ -197,6 +210,9 @@ mod tests {
         assert!(near(of(Activation::Elu), [-0.864_664_7, 0.0, 3.0]));
         assert!(near(of(Activation::Relu), [0.0, 0.0, 3.0]));
         assert!(near(of(Activation::Silu), [-0.238_405_8, 0.0, 2.857_722_3]));
+        for activation in [Activation::Elu, Activation::Relu, Activation::Silu, Activation::Tanh] {
+            assert!(activation.of(f32::NAN).is_nan(), "{activation:?}");
+        }
         assert!(near(of(Activation::Tanh), [-0.964_027_6, 0.0, 0.995_055]));
     }
 
@@ -224,6 +240,9 @@ mod tests {
         assert!(sick(&[f32::NAN, 0.0], &[1, 2], &[1]).contains("number 0 is NaN"));
         assert!(sick(&[0.0, 0.0], &[2], &[1]).contains("outputs by inputs"));
         assert!(sick(&[0.0, 0.0], &[1, 2], &[2]).contains("a.weight gives 1 numbers"));
+        let odd = file(&[tensor("a\n\u{1b}[31m", &[1], &[0.0])]);
+        let error = read(&odd, &["a"], [2, 1]).unwrap_err();
+        assert!(error.lines().count() == 1 && !error.contains('\u{1b}'), "{error:?}");
         assert!(read(&bytes[..40], &["a"], [2, 1]).unwrap_err().contains("no safetensors"));
     }
 }

@@ -17,7 +17,7 @@ use super::window::{Input, Order, Scaled, Window};
 const FRAMES_MAX: usize = 50;
 /// Most numbers that a network is fed with.
 const WIDTH_MAX: usize = 100_000;
-/// The largest file of weights that is read, bytes: some hundred times what such networks have.
+/// The largest file of weights that is read, bytes: there may be other tensors in it.
 const WEIGHTS_MAX: u64 = 256 << 20;
 /// Numbers of an action.
 const ACTION: usize = 8;
@@ -135,8 +135,7 @@ pub(super) struct Trained {
 impl PolicyFile {
     /// Reads the policy file at `path`, and the weights that it names.
     pub(super) fn read(path: &Path) -> Result<Trained, NetworkError> {
-        let text = String::from_utf8_lossy(&bytes_of(path)?).into_owned();
-        let (file, window, rate) = Self::parse(&text, path)?;
+        let (file, window, rate) = Self::parse(&text_of(path)?, path)?;
         let weights = file.weights_beside(path);
         let bytes = bytes_of(&weights)?;
         let kinds = (file.activation, file.squash);
@@ -147,8 +146,7 @@ impl PolicyFile {
 
     /// Where the weights are that the policy file at `path` names; none where nobody can tell.
     pub(super) fn weights_of(path: &Path) -> Option<PathBuf> {
-        let text = String::from_utf8(bytes_of(path).ok()?).ok()?;
-        Some(Self::parse(&text, path).ok()?.0.weights_beside(path))
+        Some(Self::parse(&text_of(path).ok()?, path).ok()?.0.weights_beside(path))
     }
 
     fn weights_beside(&self, path: &Path) -> PathBuf {
@@ -172,6 +170,10 @@ impl PolicyFile {
                 refuse(file.rate.span().start, problem)
             })?,
         };
+        let mut names = file.layers.iter().map(String::as_str).chain(file.weights.to_str());
+        if let Some(name) = names.find(|name| name.contains(char::is_control)) {
+            return Err(refuse(0, format!("{name:?} is no name: it has control characters")));
+        }
         let inputs = file.input.iter().map(|table| {
             table.input().map_err(|(at, problem)| refuse(at.unwrap_or_default(), problem))
         });
@@ -189,6 +191,12 @@ impl PolicyFile {
             _ => Ok((file, window, rate)),
         }
     }
+}
+
+/// Whether a network can be fed with `number`.
+#[allow(clippy::cast_possible_truncation)] // it is about what is lost by it
+fn is_fed(number: f64) -> bool {
+    (number as f32).is_finite()
 }
 
 /// Where, as an offset into the text, and what is wrong there.
@@ -232,8 +240,8 @@ impl TermTable {
                 let problem = format!("{key} has {count} numbers, the term has {width}");
                 return Err((at, problem));
             }
-            match each.iter().find(|number| !number.is_finite()) {
-                Some(number) => Err((at, format!("{key} = {number} must be finite"))),
+            match each.iter().find(|number| !is_fed(**number)) {
+                Some(number) => Err((at, format!("{key} = {number} must be a number of 32 bits"))),
                 None => Ok(each),
             }
         };
@@ -242,13 +250,24 @@ impl TermTable {
             Some(Clip::Both(most)) => [-most, most],
             Some(Clip::Range(range)) => range,
         };
-        if clip[0].partial_cmp(&clip[1]) != Some(Ordering::Less) {
+        let is_clipped = self.clip.is_some();
+        let is_range = clip[0].partial_cmp(&clip[1]) == Some(Ordering::Less);
+        if !is_range || (is_clipped && !clip.into_iter().all(is_fed)) {
             let problem = "clip must be a number above 0, or [least, most]";
             return Err((at, problem.to_owned()));
         }
         let offset = each("offset", &self.offset, 0.0)?;
         Ok(Scaled { term, offset, scale: each("scale", &self.scale, 1.0)?, clip })
     }
+}
+
+fn text_of(path: &Path) -> Result<String, NetworkError> {
+    String::from_utf8(bytes_of(path)?).map_err(|error| {
+        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
+        let problem = "no UTF-8; save the file as that".to_owned();
+        NetworkError::Parse { path: path.to_owned(), line, problem }
+    })
 }
 
 fn bytes_of(path: &Path) -> Result<Vec<u8>, NetworkError> {
@@ -265,7 +284,7 @@ fn bytes_of(path: &Path) -> Result<Vec<u8>, NetworkError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::FILE;
+    use super::super::made_up::FILE;
     use super::*;
 
     fn refused(from: &str, to: &str) -> String {
@@ -293,9 +312,16 @@ mod tests {
                 "scale = [1.0]",
                 "p.toml:16: scale has 1 numbers, the term has 2",
             ),
-            ("scale = [1.0, 2.0]", "scale = nan", "p.toml:16: scale = NaN must be finite"),
+            (
+                "scale = [1.0, 2.0]",
+                "scale = nan",
+                "p.toml:16: scale = NaN must be a number of 32 bits",
+            ),
             ("clip = 5", "clip = 0", "p.toml:16: clip must be a number above 0"),
             ("clip = 5", "clip = [1, nan]", "p.toml:16: clip must be"),
+            ("clip = 5", "clip = inf", "p.toml:16: clip must be"),
+            ("scale = [1.0, 2.0]", "scale = 1e300", "p.toml:16: scale = 1"),
+            ("[\"0\"]", "[\"a\\nb\"]", "p.toml:1: \"a\\nb\" is no name"),
             ("[\"0\"]", "[]", "p.toml:1: layers = [] is no network"),
             ("squash", "squish", "unknown field `squish`"),
             ("\"tanh\"", "\"gelu\"", "p.toml:3: unknown variant `gelu`"),

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::{Observation, Pose};
+use crate::{Action, Observation, Pose};
 
 /// One thing that is seen, SI, wheels in the order FR FL MR ML BR BL. `docs/policy-files.md` has the list for who
 /// trains a network.
@@ -43,6 +43,8 @@ pub(super) struct View<'a> {
     pub(super) goal: Option<Pose>,
     /// The local height map; empty where nobody looks at it.
     pub(super) heights_m: &'a [f32],
+    /// What was asked for last; nothing as a drive begins.
+    pub(super) previous_action: Action,
 }
 
 impl Term {
@@ -68,10 +70,15 @@ impl Term {
         matches!(self, Self::GoalM | Self::GoalHeadingRad)
     }
 
+    /// Whether it is known only where the machine is.
+    pub(super) const fn needs_fix(self) -> bool {
+        matches!(self, Self::GoalM | Self::GoalHeadingRad | Self::VelocityMS | Self::HeightMapM)
+    }
+
     /// Calls `each` with every number of it, in order; `None` where it is not known now, as where the machine is before
     /// its first fix.
     pub(super) fn read(self, view: &View<'_>, each: &mut impl FnMut(f64)) -> Option<()> {
-        let View { seen, goal, heights_m } = view;
+        let View { seen, goal, heights_m, previous_action } = view;
         let to_goal = || Some(seen.located.as_ref()?.pose.to_local(goal.as_ref()?));
         match self {
             Self::GoalM => to_goal()?[..2].iter().for_each(|metres| each(*metres)),
@@ -85,7 +92,7 @@ impl Term {
             Self::WheelSpeedRadS => seen.wheel_speed_rad_s.0.into_iter().for_each(each),
             Self::FrontJointRad => each(seen.front_joint_rad),
             Self::RearJointRad => each(seen.rear_joint_rad),
-            Self::PreviousAction => seen.previous_action.0.into_iter().for_each(each),
+            Self::PreviousAction => previous_action.0.into_iter().for_each(each),
             Self::HeightMapM if heights_m.len() != self.width() => return None,
             Self::HeightMapM => heights_m.iter().for_each(|height| each(f64::from(*height))),
         }
@@ -107,7 +114,7 @@ mod tests {
 
     use xt28_terrain::LocalMap;
 
-    use super::super::tests::{ALL, seen};
+    use super::super::made_up::{ALL, seen};
     use super::*;
     use crate::Located;
 
@@ -121,7 +128,8 @@ mod tests {
         let heights_m = vec![0.5; LocalMap::default().len()];
         let goal = Some(Pose::default());
         let (seen, page) = (seen(), include_str!("../../../../docs/policy-files.md"));
-        let view = View { seen: &seen, goal, heights_m: &heights_m };
+        let view =
+            View { seen: &seen, goal, heights_m: &heights_m, previous_action: Action::default() };
         for name in ALL {
             let term: Term = serde_json::from_value(name.into()).unwrap();
             assert_eq!(numbers(term, &view).unwrap().len(), term.width(), "{name}");
@@ -136,7 +144,7 @@ mod tests {
         let mut seen = seen();
         seen.located = Some(Located { pose, velocity_m_s, ..Located::default() });
         let goal = Some(Pose { east_m: 0.5, north_m: 5.0, heading_rad: 0.0 });
-        let view = View { seen: &seen, goal, heights_m: &[] };
+        let view = View { seen: &seen, goal, heights_m: &[], previous_action: Action::default() };
         let near = |term, wanted: &[f64]| {
             let read = numbers(term, &view).unwrap();
             let pairs = read.iter().zip(wanted);
@@ -147,7 +155,7 @@ mod tests {
         near(Term::VelocityMS, &[0.8, 0.1, 0.02]);
         assert_eq!(numbers(Term::HeightMapM, &view), None, "there is no map");
         seen.located = None;
-        let view = View { seen: &seen, goal, heights_m: &[] };
+        let view = View { seen: &seen, goal, heights_m: &[], previous_action: Action::default() };
         assert_eq!(numbers(Term::GoalM, &view), None, "there is no fix");
     }
 }

@@ -103,8 +103,9 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::seen;
+    use super::super::made_up::seen;
     use super::*;
+    use crate::Action;
 
     fn scaled(term: Term, offset: f64, scale: f64, clip: [f64; 2]) -> Scaled {
         let width = term.width();
@@ -116,7 +117,8 @@ mod tests {
         seen.attitude.roll_rad = roll_rad;
         seen.wheel_speed_m_s = speed_m_s;
         let mut fed = Vec::new();
-        let view = View { seen: &seen, goal: None, heights_m: &[] };
+        let view =
+            View { seen: &seen, goal: None, heights_m: &[], previous_action: Action::default() };
         window.take(&view, &mut fed).then_some(fed)
     }
 

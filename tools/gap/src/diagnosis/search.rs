@@ -53,12 +53,10 @@ struct Start {
 /// likeliest first.
 #[must_use]
 pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> {
-    let mut starts: Vec<Start> = effects
-        .par_iter()
-        .flat_map_iter(|effect| first_look(evidence, effect))
-        .filter(|start| start.gain > GAIN_MIN)
-        .collect();
+    let mut starts: Vec<Start> =
+        effects.par_iter().flat_map_iter(|effect| first_look(evidence, effect)).collect();
     starts.extend(jumped::starts(evidence, effects));
+    starts.retain(|start| start.gain > GAIN_MIN);
     starts.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let followed = followed(&starts);
     let mut fits: Vec<Fit> = followed

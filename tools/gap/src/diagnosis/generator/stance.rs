@@ -19,6 +19,7 @@ use xt28_sim::Parts;
 
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
+use crate::diagnosis::generator::grade::Grade;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 use beside::Beside;
@@ -158,6 +159,7 @@ fn errors(
 ) -> Vec<Error> {
     let effects = schedule.effects;
     let parts = Parts::new(machine, effects);
+    let known = Grade::known(s);
     let mut carriers = INNER_SHARES.map(|inner_share| {
         PerWheel::from_fn(|w| Carrier::new(s, machine, schedule, &parts, w, inner_share))
     });
@@ -170,7 +172,9 @@ fn errors(
         let held = holds.map_or(PerWheel::splat(0.0), |holds| holds.at(instant.sample));
         let arms = PerWheel::from_fn(|w| carriers[w].at(instant, held[w]));
         let beside_rad = [ground_rad, beside.mount_rad(instant.sample)];
-        judge(instant, &arms, &parts, machine, beside_rad).unwrap_or(UNKNOWN)
+        // By what is known of the ground alone: what is believed of it may not make room for other beliefs.
+        let known_rad = known.map_or(0.0, |known| known.attitude_rad(instant.heading)[1]);
+        judge(instant, &arms, &parts, machine, (beside_rad, known_rad)).unwrap_or(UNKNOWN)
     };
     strain(&mut carriers, |carriers| {
         let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
@@ -218,13 +222,14 @@ fn strain<'a>(
 }
 
 /// One instant, with where each wheel is and what it presses on the ground; how far the ground has the nose and the
-/// left side up; and the roll and pitch by which the inertial unit's mount has the attitude off.
+/// left side up; the roll and pitch by which the inertial unit's mount has the attitude off; and how far the ground is
+/// known to have the left side up.
 fn judge(
     instant: &Instant,
     arms: &PerWheel<(Reach, f64)>,
     parts: &Parts,
     machine: &Machine,
-    [[nose_rad, left_rad], [off_roll_rad, off_pitch_rad]]: [[f64; 2]; 2],
+    ([[nose_rad, left_rad], [off_roll_rad, off_pitch_rad]], known_rad): ([[f64; 2]; 2], f64),
 ) -> Option<Error> {
     let reaches = PerWheel::from_fn(|w| arms[w].0);
     let layout = Layout::new(parts, machine, instant.joint_rad, &reaches);
@@ -251,7 +256,7 @@ fn judge(
             + 6.0 * parts.wheel.mass_kg
             + parts.arms.iter().map(|(_, a)| a.body.mass_kg).sum::<f64>());
     let mut weight = weigh(&feet, &layout, plane, parts.radius_m, lean, weight_n);
-    let wedged_m = wedged_m(machine, plane, left_rad);
+    let wedged_m = wedged_m(machine, plane, known_rad);
     weight[2] = (weight[2].abs() - wedged_m).max(0.0).copysign(weight[2]);
     let rolls = instant.wheels.iter().map(|(_, wheel)| wheel.rolls.abs()).sum::<f64>() / 6.0;
     weight[1] /= 1.0 + ROLLING_DOUBT * rolls;

@@ -6,14 +6,14 @@
 use xt28_machine::{PerWheel, Wheel};
 use xt28_sim::effects::Effect;
 
-use super::Start;
+use super::{LATE_MIN, Start};
 use crate::diagnosis::evidence::Evidence;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::onset::Onset;
 
 /// Jumps within this time are one, s: what one cable carries comes within a period or two.
 const TOGETHER_S: f64 = 0.05;
-/// How many jumps are looked at: a sensor that jumps all the time is another matter.
+/// How many jumps are looked at, the largest first: a sensor that jumps all the time is another matter.
 const MOST: usize = 4;
 
 /// A jump of some readings at once.
@@ -31,20 +31,20 @@ pub(super) fn starts(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Ve
     let of = |name: &str| effects.iter().copied().find(|effect| effect.name == name);
     let (bias, scale) = (of("stroke-bias"), of("stroke-scale"));
     let mut starts = Vec::new();
-    for jump in jumps.iter().take(MOST) {
+    for jump in jumps.into_iter().take(MOST) {
         let mean = |of: fn([f64; 2]) -> f64| {
             let each: Vec<f64> = jump.by_m.iter().filter_map(|(_, by)| by.map(of)).collect();
             each.iter().sum::<f64>() / each.len() as f64
         };
         let sizes = [(bias, mean(|[by_m, _]| by_m)), (scale, mean(|[by_m, m]| (m + by_m) / m))];
         for (effect, size) in sizes {
-            let Some(effect) = effect else { continue };
+            let Some(effect) = effect.filter(|_| size.is_finite()) else { continue };
             let [low, high] = effect.parameters[0].range;
             let values = vec![size.clamp(low, high)];
             for hypothesis in Hypothesis::of(&[effect]) {
                 let onsets = jump.onsets(evidence).filter(|_| jump.is_of(&hypothesis));
                 starts.extend(onsets.map(|onset| {
-                    let gain = hypothesis.gain(evidence, onset, &values);
+                    let gain = hypothesis.gain(evidence, onset, &values) - LATE_MIN;
                     Start { hypothesis, values: values.clone(), onset, gain }
                 }));
             }
@@ -68,7 +68,7 @@ impl Jump {
     }
 }
 
-/// All jumps of all runs, in order.
+/// All jumps of all runs, the largest first.
 fn jumps(evidence: &Evidence<'_>) -> Vec<Jump> {
     let mut jumps = Vec::new();
     for run in evidence.runs() {
@@ -83,6 +83,10 @@ fn jumps(evidence: &Evidence<'_>) -> Vec<Jump> {
             jumps.push(Jump { at_s: [together[0].1[0], run.began_s], by_m });
         }
     }
+    let size_m = |jump: &Jump| {
+        jump.by_m.iter().filter_map(|(_, by)| *by).fold(0.0_f64, |most, [m, _]| most.max(m.abs()))
+    };
+    jumps.sort_by(|a, b| size_m(b).total_cmp(&size_m(a)));
     jumps
 }
 

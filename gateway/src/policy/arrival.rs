@@ -1,0 +1,53 @@
+//! When a drive to a pose is over, and whether it got there: the same for every policy that has a goal.
+
+use xt28_machine::SimTime;
+
+use super::{Outcome, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
+use crate::{Observation, Pose};
+
+/// The furthest goal of one drive, m (assumed): further away is another site's, or another origin's.
+const GOAL_MAX_M: f64 = 300.0;
+/// Slower than this is standing, m/s.
+const STANDING_M_S: f64 = 0.03;
+/// Standing this long ends a drive, s.
+const STANDING_S: f64 = 1.0;
+
+/// How a machine at `pose` stands to `goal`: reached, or how far off.
+pub(super) fn judge(pose: &Pose, goal: &Pose) -> Outcome {
+    let [ahead_m, left_m, turn_rad] = pose.to_local(goal);
+    let distance_m = ahead_m.hypot(left_m);
+    if distance_m <= REACHED_DISTANCE_M && turn_rad.abs() <= REACHED_HEADING_RAD {
+        return Outcome::Reached;
+    }
+    let turn_deg = turn_rad.to_degrees();
+    Outcome::Failed(format!("stopped {distance_m:.2} m and {turn_deg:.1} deg from the goal"))
+}
+
+/// Why a drive from `pose` to `goal` is none, if it is too far.
+pub(super) fn too_far(pose: &Pose, goal: &Pose) -> Option<Outcome> {
+    let away_m = (goal.east_m - pose.east_m).hypot(goal.north_m - pose.north_m);
+    (away_m > GOAL_MAX_M).then(|| {
+        Outcome::Failed(format!(
+            "the goal is {away_m:.0} m from the machine, and one drive goes {GOAL_MAX_M} m at most; \
+             is the origin that its coordinates count from (--origin) where the machine is?"
+        ))
+    })
+}
+
+/// A machine that comes to a stop.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Standstill {
+    since: Option<SimTime>,
+}
+
+impl Standstill {
+    /// Whether it has stood for a second.
+    pub(super) fn is_over(&mut self, seen: &Observation) -> bool {
+        let start = *self.since.get_or_insert(seen.at);
+        if seen.wheel_speed_m_s.abs() >= STANDING_M_S {
+            self.since = None;
+            return false;
+        }
+        seen.at.since(start).as_secs_f64() >= STANDING_S
+    }
+}

@@ -18,8 +18,9 @@ use xt28_safety::Command;
 
 use crate::Observation;
 
+pub use arrival::{REACHED_DISTANCE_M, REACHED_HEADING_RAD};
 pub use external::{Account, External, Refusal, Seat, Seen};
-pub use goto::{Goto, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
+pub use goto::Goto;
 pub use hold::Hold;
 pub use network::{Network, NetworkError};
 pub use script::Script;

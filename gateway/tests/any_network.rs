@@ -95,7 +95,7 @@ proptest! {
 
     /// With a squashed action, whatever it is fed with.
     #[test]
-    fn any_observation_is_answered_with_numbers(
+    fn any_observation_is_answered_with_numbers_or_not_at_all(
         bits in vec(any::<u64>().prop_map(f64::from_bits), 16),
         near in vec(-1.0..1.0, 16),
     ) {
@@ -104,8 +104,8 @@ proptest! {
         ).unwrap();
         for numbers in [bits, near] {
             let seen = observation(&numbers);
-            let command = network.act(&seen).unwrap();
-            prop_assert!(command.is_finite() || !seen.front_joint_rad.is_finite(), "{command:?}");
+            let answer = network.act(&seen);
+            prop_assert!(answer.is_none_or(|command| command.is_finite()), "{answer:?}");
         }
     }
 }

@@ -2,9 +2,13 @@
 
 use xt28_machine::SimTime;
 
-use super::{Outcome, REACHED_DISTANCE_M, REACHED_HEADING_RAD};
+use super::Outcome;
 use crate::{Observation, Pose};
 
+/// A pose counts as reached this close to it, m (paper 4.2).
+pub const REACHED_DISTANCE_M: f64 = 0.3;
+/// A pose counts as reached with this much heading error, rad (9 degrees, paper 4.2).
+pub const REACHED_HEADING_RAD: f64 = 9.0 * core::f64::consts::PI / 180.0;
 /// The furthest goal of one drive, m (assumed): further away is another site's, or another origin's.
 const GOAL_MAX_M: f64 = 300.0;
 /// Slower than this is standing, m/s.

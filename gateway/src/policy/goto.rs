@@ -17,11 +17,6 @@ use super::{Outcome, Pace, Policy};
 use crate::pose::wrap;
 use crate::{Observation, Pose};
 
-/// A pose counts as reached this close to it, m (paper 4.2).
-pub const REACHED_DISTANCE_M: f64 = 0.3;
-/// A pose counts as reached with this much heading error, rad (9 degrees, paper 4.2).
-pub const REACHED_HEADING_RAD: f64 = 9.0 * core::f64::consts::PI / 180.0;
-
 /// Speed limit of the paper's reward, m/s.
 const CRUISE_M_S: f64 = 0.8;
 /// Slowest speed driven, m/s: well above the 0.083 below which the joints hold.

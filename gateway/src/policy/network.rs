@@ -141,7 +141,8 @@ impl Network {
         let (Some(goal), Some(located)) = (&self.goal, &seen.located) else { return };
         let joint_rad = seen.front_joint_rad;
         match &mut self.stage {
-            Stage::Driving if seen.since_arming_s.is_some() => {
+            // Where the joint is held from then on must be known.
+            Stage::Driving if seen.since_arming_s.is_some() && joint_rad.is_finite() => {
                 if let Some(outcome) = too_far(&located.pose, goal) {
                     self.stage = Stage::Ended { outcome, joint_rad };
                 } else if judge(&located.pose, goal) == Outcome::Reached {

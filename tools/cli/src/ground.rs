@@ -23,7 +23,7 @@ impl Ground {
         let name = given.to_string_lossy();
         let scenario = if is_scenario(given) {
             Scenario::load(given)?
-        } else if given.exists() || name.ends_with(".toml") || name.contains('/') {
+        } else if given.is_file() || name.ends_with(".toml") || name.contains('/') {
             return Ok(Some(Self { file: given.to_owned(), _folder: None }));
         } else {
             Scenario::find(&name)?

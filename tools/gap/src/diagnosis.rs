@@ -71,7 +71,7 @@ pub use noise::with_noise_of;
 pub use onset::Onset;
 pub use scales::{Chances, Grounds, Scales};
 pub use search::search;
-pub use signals::{DT_S, Samples, Signals};
+pub use signals::{DT_S, Samples, Signals, StrokeJump};
 pub(crate) use signals::{needed, sampled};
 pub(crate) use verdict::WORTH_TELLING;
 pub use verdict::{

@@ -18,6 +18,7 @@ use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 pub(in crate::diagnosis) use command_period::{PERIOD_S, command_periods_s};
 use made::Made;
 pub(in crate::diagnosis) use receiver::unwound;
+pub use smoothed::StrokeJump;
 pub(in crate::diagnosis) use smoothed::{SMOOTHED, moving_mean, smooth};
 use smoothed::{Swing, slope, slope_over};
 use uncut::uncut;
@@ -61,8 +62,8 @@ pub struct Signals {
     pub smooth_stroke_m: PerWheel<Samples>,
     /// Slope of the smooth strokes.
     pub smooth_stroke_rate_m_s: PerWheel<Samples>,
-    /// When the reading of a stroke jumps, as no rod moves, s, by how much, m, and from what stroke, m.
-    pub stroke_jumps: PerWheel<Vec<[f64; 3]>>,
+    /// Where the readings of strokes jump.
+    pub stroke_jumps: PerWheel<Vec<StrokeJump>>,
     /// Smooth wheel speeds, forward > 0.
     pub smooth_wheel_speed_rad_s: PerWheel<Samples>,
     /// Loads of the cylinders, from their pressures.

@@ -10,6 +10,7 @@ use super::{LATE_MIN, Start};
 use crate::diagnosis::evidence::Evidence;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::onset::Onset;
+use crate::diagnosis::signals::StrokeJump;
 
 /// Jumps within this time are one, s: what one cable carries comes within a period or two.
 const TOGETHER_S: f64 = 0.05;
@@ -19,52 +20,61 @@ const MOST: usize = 4;
 /// A jump of some readings at once.
 #[derive(Clone, Debug, PartialEq)]
 struct Jump {
-    /// When, s of its run, and when that began, s of the day.
-    at_s: [f64; 2],
-    /// By how much each reading jumps, m, and from what stroke.
-    by_m: PerWheel<Option<[f64; 2]>>,
+    /// When, s of its run.
+    at_s: f64,
+    /// When that began, s of the day.
+    began_s: f64,
+    /// Of which wheels, and how.
+    of: PerWheel<Option<StrokeJump>>,
 }
 
 /// Starts for the sensors of strokes among `effects`.
 pub(super) fn starts(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Start> {
-    let jumps = jumps(evidence);
-    let of = |name: &str| effects.iter().copied().find(|effect| effect.name == name);
-    let (bias, scale) = (of("stroke-bias"), of("stroke-scale"));
     let mut starts = Vec::new();
-    for jump in jumps.into_iter().take(MOST) {
-        let mean = |of: fn([f64; 2]) -> f64| {
-            let each: Vec<f64> = jump.by_m.iter().filter_map(|(_, by)| by.map(of)).collect();
-            each.iter().sum::<f64>() / each.len() as f64
-        };
-        let sizes = [(bias, mean(|[by_m, _]| by_m)), (scale, mean(|[by_m, m]| (m + by_m) / m))];
-        for (effect, size) in sizes {
+    for jump in jumps(evidence).iter().take(MOST) {
+        let bias_m = jump.mean(|of| of.by_m);
+        let factor = jump.mean(|of| (of.from_m + of.by_m) / of.from_m);
+        for (name, size) in [("stroke-bias", bias_m), ("stroke-scale", factor)] {
+            // An arm that is all the way in has no scale.
+            let effect = effects.iter().copied().find(|effect| effect.name == name);
             let Some(effect) = effect.filter(|_| size.is_finite()) else { continue };
             let [low, high] = effect.parameters[0].range;
-            let values = vec![size.clamp(low, high)];
-            for hypothesis in Hypothesis::of(&[effect]) {
-                let onsets = jump.onsets(evidence).filter(|_| jump.is_of(&hypothesis));
-                starts.extend(onsets.map(|onset| {
-                    let gain = hypothesis.gain(evidence, onset, &values) - LATE_MIN;
-                    Start { hypothesis, values: values.clone(), onset, gain }
-                }));
-            }
+            starts.extend(jump.starts(evidence, effect, size.clamp(low, high)));
         }
     }
     starts
 }
 
 impl Jump {
-    /// Whether just the readings of its wheels jump.
-    fn is_of(&self, hypothesis: &Hypothesis) -> bool {
-        Wheel::ALL.into_iter().all(|w| hypothesis.scope.contains(w) == self.by_m[w].is_some())
+    /// Mean over the readings that jump.
+    fn mean(&self, of: fn(&StrokeJump) -> f64) -> f64 {
+        let each: Vec<f64> = self.of.iter().filter_map(|(_, jump)| jump.as_ref().map(of)).collect();
+        each.iter().sum::<f64>() / each.len() as f64
     }
 
-    /// In every run at that instant, and once on the day where that is known.
-    fn onsets(&self, evidence: &Evidence<'_>) -> impl Iterator<Item = Onset> + use<> {
-        let [at_s, began_s] = self.at_s;
+    /// By how much the reading jumps that does so most, m.
+    fn size_m(&self) -> f64 {
+        let each = self.of.iter().filter_map(|(_, jump)| jump.as_ref());
+        each.fold(0.0, |most, jump| most.max(jump.by_m.abs()))
+    }
+
+    /// An `effect` of this size from the jump on: in every run at that instant, and once on the day where that is known.
+    fn starts(&self, evidence: &Evidence<'_>, effect: &'static Effect, size: f64) -> Vec<Start> {
         let is_day_known = !evidence.starts_on_the_day_s().is_empty();
-        let once = is_day_known.then(|| Onset::once(began_s + at_s));
-        [Some(Onset::in_every_run(at_s)), once].into_iter().flatten()
+        let once = is_day_known.then(|| Onset::once(self.began_s + self.at_s));
+        let onsets = [Some(Onset::in_every_run(self.at_s)), once];
+        let is_of = |one: &Hypothesis| {
+            Wheel::ALL.into_iter().all(|w| one.scope.contains(w) == self.of[w].is_some())
+        };
+        let mut starts = Vec::new();
+        for hypothesis in Hypothesis::of(&[effect]).into_iter().filter(is_of) {
+            starts.extend(onsets.into_iter().flatten().map(|onset| {
+                let values = vec![size];
+                let gain = hypothesis.gain(evidence, onset, &values) - LATE_MIN;
+                Start { hypothesis, values, onset, gain }
+            }));
+        }
+        starts
     }
 }
 
@@ -73,20 +83,15 @@ fn jumps(evidence: &Evidence<'_>) -> Vec<Jump> {
     let mut jumps = Vec::new();
     for run in evidence.runs() {
         let each = run.stroke_jumps.iter().flat_map(|(w, all)| all.iter().map(move |j| (w, *j)));
-        let mut each: Vec<(Wheel, [f64; 3])> = each.collect();
-        each.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
-        for together in each.chunk_by(|a, b| b.1[0] - a.1[0] < TOGETHER_S) {
-            let mut by_m = PerWheel::splat(None);
-            for (w, [_, by, from_m]) in together {
-                by_m[*w] = Some([*by, *from_m]);
-            }
-            jumps.push(Jump { at_s: [together[0].1[0], run.began_s], by_m });
+        let mut each: Vec<(Wheel, StrokeJump)> = each.collect();
+        each.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
+        for together in each.chunk_by(|a, b| b.1.at_s - a.1.at_s < TOGETHER_S) {
+            let mut of = PerWheel::splat(None);
+            together.iter().for_each(|(w, jump)| of[*w] = Some(*jump));
+            jumps.push(Jump { at_s: together[0].1.at_s, began_s: run.began_s, of });
         }
     }
-    let size_m = |jump: &Jump| {
-        jump.by_m.iter().filter_map(|(_, by)| *by).fold(0.0_f64, |most, [m, _]| most.max(m.abs()))
-    };
-    jumps.sort_by(|a, b| size_m(b).total_cmp(&size_m(a)));
+    jumps.sort_by(|a, b| b.size_m().total_cmp(&a.size_m()));
     jumps
 }
 
@@ -104,7 +109,8 @@ mod tests {
     fn loose(jumps: &[(Wheel, f64, f64)]) -> Vec<Signals> {
         let mut s = still(10);
         for (wheel, at_s, by_m) in jumps {
-            s.stroke_jumps[*wheel].push([*at_s, *by_m, 0.16]);
+            let jump = StrokeJump { at_s: *at_s, by_m: *by_m, from_m: 0.16 };
+            s.stroke_jumps[*wheel].push(jump);
         }
         vec![s]
     }

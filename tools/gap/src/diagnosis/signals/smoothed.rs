@@ -3,6 +3,17 @@
 use super::uncut::{CUT_M, jumped_m};
 use super::{DT_S, Samples};
 
+/// A reading of a stroke that becomes another at once, as no rod moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrokeJump {
+    /// When, s.
+    pub at_s: f64,
+    /// By how much, m.
+    pub by_m: f64,
+    /// Reading before it, m.
+    pub from_m: f64,
+}
+
 /// How an arm swings by the readings of its stroke.
 pub(super) struct Swing {
     /// Smooth readings but for what they have jumped by, m: a sensor that comes loose moves no arm.
@@ -26,12 +37,14 @@ impl Swing {
         both.map(|(moved_m, jumped_m)| moved_m + jumped_m + 0.5 * CUT_M).collect()
     }
 
-    /// When a reading jumps, s, by how much, m, and from what stroke, m.
-    pub(super) fn jumps(&self) -> impl Iterator<Item = [f64; 3]> {
+    /// Where readings jump.
+    pub(super) fn jumps(&self) -> impl Iterator<Item = StrokeJump> {
         let pairs = self.jumped_m.windows(2).enumerate();
-        pairs
-            .filter(|(_, pair)| pair[0] != pair[1])
-            .map(|(i, pair)| [(i + 1) as f64 * DT_S, pair[1] - pair[0], self.moved_m[i] + pair[0]])
+        pairs.filter(|(_, pair)| pair[0] != pair[1]).map(|(i, pair)| StrokeJump {
+            at_s: (i + 1) as f64 * DT_S,
+            by_m: pair[1] - pair[0],
+            from_m: self.moved_m[i] + pair[0],
+        })
     }
 
     /// Its rate, m/s.
@@ -103,7 +116,9 @@ mod tests {
         let (stroke_m, rate_m_s) = (swing.stroke_m(), swing.rate_m_s());
         // But for the step that it moved by as it jumped.
         assert!(rate_m_s[60..340].iter().all(|rate| (rate - 0.01).abs() < 4e-3));
-        let [[at_s, by_m, from_m]] = swing.jumps().collect::<Vec<_>>()[..] else { panic!() };
+        let [StrokeJump { at_s, by_m, from_m }] = swing.jumps().collect::<Vec<_>>()[..] else {
+            panic!("it jumps once")
+        };
         assert!((at_s - 2.0).abs() < 1e-9 && (by_m - 0.025).abs() < 1e-9, "{at_s} {by_m}");
         assert!((from_m - 0.189).abs() < 2e-3, "{from_m}");
         assert!((stroke_m[200] - stroke_m[199] - 0.025).abs() < 1e-3);

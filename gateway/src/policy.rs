@@ -12,6 +12,7 @@ mod script;
 mod script_file;
 mod spec;
 mod steering;
+mod toml_text;
 
 use xt28_machine::SimTime;
 use xt28_safety::Command;
@@ -25,7 +26,7 @@ pub use hold::Hold;
 pub use network::{Network, NetworkError};
 pub use script::Script;
 pub use script_file::ScriptError;
-pub use spec::{SpecError, files_of, from_spec};
+pub use spec::{SpecError, from_spec, network_files, takes_map};
 
 /// Turns observations into demands. It sees nothing else and is trusted with nothing: the safety
 /// kernel stands between it and the bus.

@@ -103,7 +103,7 @@ fn policy(
     machine: &Machine,
     config: &GatewayConfig,
 ) -> Result<(Box<dyn Policy>, Option<Remote>), Problem> {
-    if args.map.is_some() && listen.is_none() && !args.policy.starts_with("network:") {
+    if args.map.is_some() && !gateway::policy::takes_map(&args.policy) {
         return Err(Problem::MapUnused);
     }
     let map = args.map.as_deref().map(surveyed).transpose()?;

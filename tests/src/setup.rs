@@ -86,6 +86,12 @@ impl Setup {
         Listen::parse(&self.scenario.policy)
     }
 
+    /// Whether what drives may look at the map.
+    #[must_use]
+    pub fn takes_map(&self) -> bool {
+        policy::takes_map(&self.scenario.policy)
+    }
+
     /// Refuses what would be refused at the start of a run, before a file is opened for it.
     ///
     /// # Errors
@@ -108,7 +114,7 @@ impl Setup {
         let named = [&scenario.machine, &scenario.operator, &scenario.terrain.file];
         let maps = scenario.terrain.spec.height_map.iter().map(|map| &map.file);
         let named = named.into_iter().flatten().chain(script).chain(maps).cloned();
-        named.chain(policy::files_of(&scenario.policy))
+        named.chain(policy::network_files(&scenario.policy))
     }
 
     /// The machine file, where one is named; otherwise the built-in machine runs.

@@ -6,6 +6,8 @@ use serde::Deserialize;
 use toml::Spanned;
 use xt28_safety::Limits;
 
+use super::toml_text::{line_at, parsed};
+
 /// Why a script was refused.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptError {
@@ -89,13 +91,10 @@ impl ScriptFile {
     pub(super) fn parse(text: &str, path: &Path, limits: &Limits) -> Result<Self, ScriptError> {
         let refuse = |at: usize, problem: String| ScriptError::Parse {
             path: path.to_owned(),
-            line: text.as_bytes()[..at.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1,
+            line: line_at(text.as_bytes(), at),
             problem,
         };
-        let file: Self = toml::from_str(text).map_err(|error| {
-            let problem = error.message().trim_end().replace('\n', " ");
-            refuse(error.span().map_or(0, |span| span.start), problem)
-        })?;
+        let file: Self = parsed(text).map_err(|(at, problem)| refuse(at, problem))?;
         let mut before_s = 0.0;
         for entry in &file.commands {
             let at = entry.at_s.span().start;

@@ -82,14 +82,17 @@ pub fn from_spec(
     }
 }
 
-/// Files that the policy of this name reads, as far as they can be told.
+/// Files that a network of this name is read from, as far as they can be told; of other policies none.
 #[must_use]
-pub fn files_of(spec: &str) -> Vec<PathBuf> {
-    match spec.split_once(':') {
-        Some(("script", file)) => vec![file.into()],
-        Some(("network", network)) => Network::files(Path::new(network_parts(network).0)),
-        _ => Vec::new(),
-    }
+pub fn network_files(spec: &str) -> Vec<PathBuf> {
+    let network = spec.strip_prefix("network:").map(network_parts);
+    network.map_or(Vec::new(), |(file, _)| Network::files(Path::new(file)))
+}
+
+/// Whether a policy of this name may look at a map of the ground.
+#[must_use]
+pub fn takes_map(spec: &str) -> bool {
+    ["network:", "rosbridge:"].iter().any(|kind| spec.starts_with(kind))
 }
 
 /// The file of a network, and its goal: names of files may have an `@` as well.

@@ -217,8 +217,7 @@ fn gateway_arguments(
     if let Some(machine) = setup.machine_file() {
         add("--machine", machine.into());
     }
-    let is_network = setup.scenario.policy.starts_with("network:");
-    if is_network || setup.listen()?.is_some() {
+    if setup.takes_map() {
         add("--map", terrain_file(setup, folder)?);
     }
     Ok(arguments)

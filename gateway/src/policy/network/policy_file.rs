@@ -12,6 +12,7 @@ use super::layers::{Activation, Layers, Squash};
 use super::rate::Rate;
 use super::term::Term;
 use super::window::{Input, Order, Scaled, Window};
+use crate::policy::toml_text::{line_at, parsed};
 
 /// Most frames of a window: six seconds at the receiver's rate.
 const FRAMES_MAX: usize = 50;
@@ -156,13 +157,10 @@ impl PolicyFile {
     fn parse(text: &str, path: &Path) -> Result<(Self, Window, Rate), NetworkError> {
         let refuse = |at: usize, problem: String| NetworkError::Parse {
             path: path.to_owned(),
-            line: text.as_bytes()[..at.min(text.len())].iter().filter(|&&b| b == b'\n').count() + 1,
+            line: line_at(text.as_bytes(), at),
             problem,
         };
-        let file: Self = toml::from_str(text).map_err(|error| {
-            let problem = error.message().trim_end().replace('\n', " ");
-            refuse(error.span().map_or(0, |span| span.start), problem)
-        })?;
+        let file: Self = parsed(text).map_err(|(at, problem)| refuse(at, problem))?;
         let rate = match *file.rate.get_ref() {
             RateKey::Fix(Fix::Fix) => Rate::Fix,
             RateKey::Hz(hz) => Rate::of_hz(hz).ok_or_else(|| {
@@ -263,8 +261,7 @@ impl TermTable {
 
 fn text_of(path: &Path) -> Result<String, NetworkError> {
     String::from_utf8(bytes_of(path)?).map_err(|error| {
-        let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
+        let line = line_at(error.as_bytes(), error.utf8_error().valid_up_to());
         let problem = "no UTF-8; save the file as that".to_owned();
         NetworkError::Parse { path: path.to_owned(), line, problem }
     })

@@ -174,7 +174,7 @@ fn errors(
         let beside_rad = [ground_rad, beside.mount_rad(instant.sample)];
         // By what is known of the ground alone: what is believed of it may not make room for other beliefs.
         let known_rad = known.map_or(0.0, |known| known.attitude_rad(instant.heading)[1]);
-        judge(instant, &arms, &parts, machine, (beside_rad, known_rad)).unwrap_or(UNKNOWN)
+        judge(instant, &arms, &parts, machine, beside_rad, known_rad).unwrap_or(UNKNOWN)
     };
     strain(&mut carriers, |carriers| {
         let first = instants.iter().take_while(|instant| strained::begins(instant.sample));
@@ -229,7 +229,8 @@ fn judge(
     arms: &PerWheel<(Reach, f64)>,
     parts: &Parts,
     machine: &Machine,
-    ([[nose_rad, left_rad], [off_roll_rad, off_pitch_rad]], known_rad): ([[f64; 2]; 2], f64),
+    [[nose_rad, left_rad], [off_roll_rad, off_pitch_rad]]: [[f64; 2]; 2],
+    known_rad: f64,
 ) -> Option<Error> {
     let reaches = PerWheel::from_fn(|w| arms[w].0);
     let layout = Layout::new(parts, machine, instant.joint_rad, &reaches);

@@ -30,6 +30,9 @@ pub(crate) struct ThirdMake {
     /// Faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay
     #[arg(long, conflicts_with = "late")]
     once: bool,
+    /// The machine drives to goals as a learnt controller does, instead of test drives
+    #[arg(long)]
+    policy: bool,
     /// Also so many pairs of known faults, drawn by lot
     #[arg(long, default_value_t = 0, value_name = "N")]
     pairs: u32,
@@ -43,15 +46,13 @@ impl ThirdMake {
     pub(crate) fn execute(&self, workspace: &Workspace) -> Outcome<u8> {
         let mut command = yardstick::module(workspace, "third_make")?;
         command.arg(std::path::absolute(&self.out)?).args(&self.causes);
-        if self.bearings {
-            command.arg("--bearings");
-        }
-        if self.late {
-            command.arg("--late");
-        }
-        if self.once {
-            command.arg("--once");
-        }
+        let switches = [
+            (self.bearings, "--bearings"),
+            (self.late, "--late"),
+            (self.once, "--once"),
+            (self.policy, "--policy"),
+        ];
+        command.args(switches.iter().filter(|(on, _)| *on).map(|(_, switch)| switch));
         let status = command
             .args([format!("--seed={}", self.seed), format!("--pairs={}", self.pairs)])
             .status()?;

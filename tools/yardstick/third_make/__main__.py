@@ -10,6 +10,7 @@ from xt28_mujoco.machine import Machine
 
 from .faults import NAMES, draw, once, pairs
 from .run import Run
+from .policy import drives as policy_drives
 from .scripts import RAMP, drives
 from .truth import Truth, tolerances
 from .wire import logged_database
@@ -84,7 +85,7 @@ def write(args, seed: int, causes: list[str]) -> str:
     folder = args.out / name
     folder.mkdir(parents=True, exist_ok=True)
     (args.out / "answers").mkdir(exist_ok=True)
-    scripts = drives(random)
+    scripts = policy_drives(random) if args.policy else drives(random)
     for number, script in enumerate(scripts, 1):
         noise = np.random.default_rng((seed, number))
         there = [fault for fault in (fault.in_run(number) for fault in faults) if fault]
@@ -121,6 +122,11 @@ def main() -> None:
         "--once",
         action="store_true",
         help="faults set in once, with the second, third or fourth run or 8 to 14 s into it, and stay",
+    )
+    parser.add_argument(
+        "--policy",
+        action="store_true",
+        help="the machine drives to goals as a learnt controller does, instead of test drives",
     )
     parser.add_argument(
         "--pairs", type=int, default=0, metavar="N", help="also N pairs of known faults, by lot"

@@ -13,6 +13,7 @@ from .arms import Arms
 from .body import RATE_HZ, Body, heading
 from .drive import Drive, Joints, pump_bar
 from .ecu import TICK_S, ArmEcu, DriveEcu
+from .policy import Policy, Seen
 from .scripts import RAMP, Script
 from .sensing import Sensors, specific_force
 from .truth import N, Truth
@@ -33,7 +34,7 @@ class Run:
     """Everything that goes on in a drive."""
 
     def __init__(
-        self, machine: Machine, dbc: Path, truth: Truth, faults, script: Script, random
+        self, machine: Machine, dbc: Path, truth: Truth, faults, script: Script | Policy, random
     ):
         self._faults = sorted(faults, key=lambda fault: fault.start_s)
         self._set_in(truth, 0.0)
@@ -53,6 +54,7 @@ class Run:
         self._steer, self._openings = [0.0, 0.0], [0.0] * N
         self._before = np.zeros(3)
         self._rpm, self._fixes = np.zeros(N), 0
+        self._seen: Seen | None = None
 
     def log(self, begin_s: float) -> bytes:
         """Drives the script and returns its log."""
@@ -84,7 +86,7 @@ class Run:
             self._wire.send(now_s + ENGINE_S, self._wire.encode("EEC1", speed))
 
     def _command(self, now_s: float, tick: int) -> None:
-        target, throttle, steer = command = self._script.at(now_s)
+        target, throttle, steer = command = self._script.at(now_s, self._seen)
         bus, draw = self._truth.bus, self._random.random(3)
         arrives = [tick < 0 or share >= bus.loss for share in draw[1:]]
         at_s = now_s + bus.late_s * draw[0]
@@ -113,6 +115,7 @@ class Run:
 
     def _fix(self, now_s: float) -> list[str]:
         place, velocity, course = self._sensors.fix(now_s)
+        self._seen = Seen((place[0], place[1]), course, *self._arm_ecu.attitude_deg())
         encode = self._wire.encode
         east, north, up = velocity * 1e3
         return [

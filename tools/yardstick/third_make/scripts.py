@@ -24,7 +24,7 @@ class Script:
     steer: list = field(default_factory=list)
     ramp: bool = False
 
-    def at(self, time_s: float) -> tuple[list[int], float, float]:
+    def at(self, time_s: float, _seen=None) -> tuple[list[int], float, float]:
         """Targets, mm in steps of 2; throttle, %; front angle, deg."""
         time_s = max(time_s, 0.0)
 

@@ -132,8 +132,8 @@ impl Generator {
             Self::SteerEcu(joint) => {
                 name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
             }
-            Self::Joint(_) => {
-                effect.block == Block::Steering && !Self::SteerEcu(1).hears(effect, scope)
+            Self::Joint(joint) => {
+                effect.block == Block::Steering && (joint == 1 || name != "rear-follower-lag")
             }
             Self::Drive => {
                 effect.block == Block::Drive
@@ -244,7 +244,7 @@ impl Generator {
                 vec![one(Signal::ArmOpening, error)]
             }
             Self::Joint(j) => {
-                let errors = joints::joint_errors(s, machine, effects, j).by_signal();
+                let errors = joints::joint_errors(s, machine, schedule, j).by_signal();
                 errors.map(|(signal, raw)| one(signal, raw)).to_vec()
             }
             Self::SteerEcu(j) => {

@@ -6,11 +6,12 @@
 //! measured; the torque it then lets stand must still be the one that this motion takes.
 
 use xt28_machine::Machine;
-use xt28_sim::{Effects, Steering};
+use xt28_sim::Steering;
 
 use super::controllers::steer_opening_asked;
 use super::current_step::{STEER_STEP, within_step};
 use super::scrub::scrub_nm;
+use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
@@ -54,16 +55,17 @@ const SURELY_LESS: f64 = 0.85;
 pub(super) fn joint_errors(
     signals: &Signals,
     machine: &Machine,
-    effects: &Effects,
+    schedule: EffectSchedule<'_>,
     joint: usize,
 ) -> JointErrors {
+    let effects = schedule.effects;
     let steering = Steering::new(machine, &effects.steering);
     let mut state = steering.straight(DT_S);
     let angle = &signals.joint_rad[joint];
     let stiffness_nm = steering.stiffness_nm();
     let half_play = 0.5 * effects.steering.backlash.width_rad;
     let reach = machine.articulation.torque_max_nm / stiffness_nm + half_play;
-    let openings = finer_openings(signals, machine, joint);
+    let openings = finer_openings(signals, machine, schedule, joint);
     let scrub = scrub_nm(signals, machine, effects, joint);
     let mut oil_rad = angle.first().copied().unwrap_or_default();
     // Within the play nothing is held: where the joint is then is the ground's matter, and a play that
@@ -113,15 +115,25 @@ fn untouched(angle_rad: &[f64], openings: &[f64]) -> usize {
     instants.position(is_touched).unwrap_or(angle_rad.len())
 }
 
-/// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged.
-fn finer_openings(signals: &Signals, machine: &Machine, joint: usize) -> Samples {
-    let asked = steer_opening_asked(signals, machine, (&Effects::default()).into(), joint);
+/// Openings finer than the wire tells them: what the ECU's law asks for, within the step logged. By the law that is
+/// believed: one that always asks for more than the ECU's does would have the valve open wider by half a step at
+/// every instant, and the joint's oil sums that up.
+fn finer_openings(
+    signals: &Signals,
+    machine: &Machine,
+    schedule: EffectSchedule<'_>,
+    joint: usize,
+) -> Samples {
+    let asked = steer_opening_asked(signals, machine, schedule, joint);
     let within = |(asked, logged): (&f64, &f64)| within_step(*asked, *logged, STEER_STEP);
     asked.iter().zip(&signals.steer_opening[joint]).map(within).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
+    use xt28_sim::Effects;
+
     use super::super::still::still;
     use super::*;
 
@@ -141,7 +153,7 @@ mod tests {
             signals.joint_rate_rad_s[0][i] = rate_rad_s;
             signals.joint_rad[0][i] = angle_rad;
         }
-        let errors = joint_errors(&signals, &machine, &effects, 0);
+        let errors = joint_errors(&signals, &machine, (&effects).into(), 0);
         let largest = errors.relief_rad_s.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
         largest / Signal::JointRelief.floor().sigma
     }
@@ -153,7 +165,7 @@ mod tests {
         effects.steering.backlash.width_rad = 0.03;
         let mut signals = still(10);
         signals.steer_opening[0][from..to].fill(-0.5);
-        let slow = joint_errors(&signals, &machine, &effects, 0).slow_rad;
+        let slow = joint_errors(&signals, &machine, (&effects).into(), 0).slow_rad;
         let sigma = Signal::JointAngle.floor().sigma;
         slow.iter().map(|rad| (rad / sigma).powi(2)).sum()
     }
@@ -166,6 +178,32 @@ mod tests {
         // Held within the play from the first turn on.
         assert!(costs(500, 501) > 0.3 * signals.len as f64, "{}", costs(500, 501));
         assert!(costs(500, 501) < 0.35 * signals.len as f64, "{}", costs(500, 501));
+    }
+
+    /// An ECU with weaker gains, a front joint that is asked to swing and stays behind: what its currents leave open is
+    /// told by its own law and not by the one of a sound machine.
+    #[test]
+    fn openings_are_told_within_a_step_by_the_law_that_is_believed() {
+        let (machine, mut weak) = (Machine::xt28(), Effects::default());
+        weak.steering.gain.kp_factor = 0.7;
+        let mut s = still(20);
+        for w in Wheel::ALL {
+            // It stands as the log begins, so that nothing is summed up.
+            s.wheel_speed_rad_s[w][100..].fill(2.0);
+        }
+        let swing = |i: usize| 0.2 * (0.005 * i as f64).sin();
+        s.target_joint_rad = (0..s.len).map(swing).collect();
+        s.joint_rad[0] = (0..s.len).map(|i| swing(i.saturating_sub(40))).collect();
+        let asked = steer_opening_asked(&s, &machine, (&weak).into(), 0);
+        s.steer_opening[0] =
+            asked.iter().map(|asked| (asked / STEER_STEP).round() * STEER_STEP).collect();
+        let off = |effects: &Effects| {
+            let finer = finer_openings(&s, &machine, effects.into(), 0);
+            let steps = finer.iter().zip(&asked).map(|(finer, asked)| (finer - asked).abs());
+            steps.sum::<f64>() / (STEER_STEP * s.len as f64)
+        };
+        assert!(off(&weak) < 0.01, "{}", off(&weak));
+        assert!(off(&Effects::default()) > 0.5, "{}", off(&Effects::default()));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! One cylinder's load as the ECU reads it, and as it was before the ECU's pressure filter.
 
-use xt28_machine::{Machine, Wheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::effects::WheelEffects;
 
 use crate::diagnosis::gauge::rod_n;
@@ -21,9 +21,11 @@ const SLOW_M_S: f64 = 0.005;
 /// the ECU's filter, which cuts off, stops short of it.
 const FULL_PA: f64 = 24.98e6;
 
-/// How long before and after a reading at the end of its scale the filter cannot be undone, samples:
-/// two readings at the slowest rate.
-const OFF_SCALE_SAMPLES: usize = 20;
+/// Samples between two readings at the slowest rate that pressures are logged at, 20 Hz.
+const READINGS_APART: usize = 5;
+
+/// How long before and after a reading at the end of its scale the filter cannot be undone, samples.
+const OFF_SCALE_SAMPLES: usize = 4 * READINGS_APART;
 
 /// Loads of one cylinder over a run, positive under weight.
 pub(super) struct Loads {
@@ -87,12 +89,27 @@ impl Loads {
 /// shortly, so that nobody knows what it is: a sensor that reads too little, under little load, or a heavy machine
 /// on a ramp.
 pub(in crate::diagnosis) fn is_off_scale(signals: &Signals, wheel: Wheel, i: usize) -> bool {
-    let near = i.saturating_sub(OFF_SCALE_SAMPLES)..=(i + OFF_SCALE_SAMPLES);
-    let ends = [*near.start(), i, *near.end()];
-    let at_its_end = |pa: &Samples| {
-        ends.iter().any(|i| pa.get(*i).is_some_and(|pa| *pa <= 0.0 || *pa >= FULL_PA))
-    };
-    signals.chamber_pa[wheel].iter().any(at_its_end)
+    let off =
+        signals.off_scale(|| PerWheel::from_fn(|wheel| off_scale(&signals.chamber_pa[wheel])));
+    off[wheel].get(i) == Some(&true)
+}
+
+/// The same of every sample of a cylinder's `chambers`. Told with the filter undone: one that climbs to the end of the
+/// scale shows it a second after its sensor.
+fn off_scale(chambers: &[Samples; 2]) -> Vec<bool> {
+    let mut off = vec![false; chambers[0].len()];
+    let kept = KEPT.powi(READINGS_APART as i32);
+    for pa in chambers {
+        for i in 0..pa.len() {
+            let before_pa = pa[i.saturating_sub(READINGS_APART)];
+            let sensed_pa = (pa[i] - kept * before_pa) / (1.0 - kept);
+            if sensed_pa <= 0.0 || sensed_pa >= FULL_PA {
+                let end = off.len().min(i + OFF_SCALE_SAMPLES + 1);
+                off[i.saturating_sub(OFF_SCALE_SAMPLES).min(end)..end].fill(true);
+            }
+        }
+    }
+    off
 }
 
 /// Input of a filter that keeps [`KEPT`] of itself every sample, from its output where that is new.
@@ -125,6 +142,28 @@ mod tests {
         s.chamber_pa[Wheel::Fr][0][500..600].fill(24.986e6);
         let off = |i| is_off_scale(&s, Wheel::Fr, i);
         assert!(!off(400) && off(490) && off(550) && off(610) && !off(700));
+    }
+
+    /// A load that bounces is at the end of its sensor's scale for a tenth of a second, which the filter never shows.
+    #[test]
+    fn a_sensor_at_the_end_of_its_scale_is_seen_behind_the_filter() {
+        for every in [1, 5] {
+            let mut shown_pa = 15.0e6;
+            let climbs = |i: usize| if (500..510).contains(&i) { 25.0e6 } else { 15.0e6 };
+            let mut s = still(10);
+            let [bore, rod] = &mut s.chamber_pa[Wheel::Fr];
+            rod.fill(5.0e5);
+            let mut held_pa = shown_pa;
+            for (i, pa) in bore.iter_mut().enumerate() {
+                // In whole kilopascals, cut off.
+                shown_pa = 1e3 * ((KEPT * shown_pa + (1.0 - KEPT) * climbs(i)) * 1e-3).trunc();
+                held_pa = if i % every == every - 1 { shown_pa } else { held_pa };
+                *pa = held_pa;
+            }
+            assert!(bore.iter().all(|pa| *pa < 20.0e6));
+            let off = |i| is_off_scale(&s, Wheel::Fr, i);
+            assert!(!off(470) && off(500) && off(509) && !off(540), "{every}");
+        }
     }
 
     #[test]

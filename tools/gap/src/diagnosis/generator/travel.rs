@@ -1,6 +1,7 @@
 //! Wheel speeds against one another and against the receiver: who slips, who misreads, who is late.
 
-use xt28_machine::{Machine, PerWheel};
+use xt28_machine::{Machine, PerWheel, Wheel};
+use xt28_sim::Effects;
 
 use super::antenna::Antenna;
 use super::grade::Grade;
@@ -57,6 +58,7 @@ pub(super) fn travel_errors(
         let then_s = at_s - antenna.late_s(at_s);
         leans_m[((then_s / DT_S).max(0.0) as usize).min(s.len - 1)]
     };
+    let creep_s = side_creep_s(machine, effects);
     let holds_s = 1.5 * interval_s(&s.fixes);
     for (k, &[t1, x1, y1]) in s.fixes.iter().enumerate() {
         let [t0, x0, y0] = a_window_before(&s.fixes[..=k]);
@@ -83,7 +85,7 @@ pub(super) fn travel_errors(
             }
             if wheel_m_s > COURSE_M_S {
                 let ahead_m = machine.sensors.gnss_antenna_m[0] + lever_m[0];
-                let side = yaw_rate * ahead_m;
+                let side = yaw_rate * ahead_m - creep_s * wheel_m_s * yaw_rate;
                 let moved_m = cos * dy - sin * dx - beside_m[1];
                 angle = side / wheel_m_s - moved_m / (t1 - t0) / wheel_m_s;
             }
@@ -94,6 +96,14 @@ pub(super) fn travel_errors(
         }
     }
     TravelErrors { speed_m_s: speed, course_rad: course, wheel_rad_s: rolling.wheel_rad_s }
+}
+
+/// Speed at which the front wheels slip to the outside of a bend for its acceleration, s: each is pushed there by
+/// its share of the mass, and gives way as it does to what its motor pushes.
+fn side_creep_s(machine: &Machine, effects: &Effects) -> f64 {
+    let each_kg = (machine.mass_kg() + effects.masses.payload.mass_kg) / 6.0;
+    let of = |w: Wheel| effects.wheels[w].slippery_ground.creep_m_s_n;
+    each_kg * 0.5 * (of(Wheel::Fr) + of(Wheel::Fl))
 }
 
 /// The one of `fixes` that is nearest to a window before the last, however often a receiver speaks.
@@ -116,7 +126,49 @@ fn interval_s(fixes: &[[f64; 3]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::still::still;
     use super::*;
+
+    /// A machine that goes round to the left at 1 m/s and 0.1 rad/s, its front axle slipping to the outside.
+    fn bend(machine: &Machine, slips_m_s: f64) -> Signals {
+        let mut s = still(20);
+        (s.fixes, s.headings) = (Vec::new(), Vec::new());
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(25.0e3);
+            for speed in [&mut s.smooth_wheel_speed_rad_s[w], &mut s.wheel_speed_rad_s[w]] {
+                speed.fill(1.0 / machine.wheels.radius_m);
+            }
+        }
+        let ahead_m = machine.sensors.gnss_antenna_m[0];
+        let (mut x_m, mut y_m) = (0.0, 0.0);
+        for i in 0..s.len {
+            let at_s = i as f64 * DT_S;
+            let (sin, cos) = (0.1 * at_s).sin_cos();
+            if i % 12 == 0 {
+                s.fixes.push([at_s, x_m + ahead_m * cos, y_m + ahead_m * sin]);
+                s.headings.push([at_s, 0.1 * at_s, 0.1]);
+            }
+            x_m += (cos + sin * slips_m_s) * DT_S;
+            y_m += (sin - cos * slips_m_s) * DT_S;
+        }
+        s
+    }
+
+    #[test]
+    fn wheels_that_creep_slip_to_the_outside_of_a_bend() {
+        let machine = Machine::xt28();
+        let mut slippery = Effects::default();
+        for w in Wheel::ALL {
+            slippery.wheels[w].slippery_ground.creep_m_s_n = 1.2e-4;
+        }
+        let s = bend(&machine, 1.2e-4 * machine.mass_kg() / 6.0 * 0.1);
+        let course_rad = |effects: &Effects| {
+            let errors = travel_errors(&s, &machine, effects.into());
+            errors.course_rad[500..1500].iter().fold(0.0_f64, |most, e| most.max(e.abs()))
+        };
+        assert!(course_rad(&slippery) < 2.0e-3, "{}", course_rad(&slippery));
+        assert!(course_rad(&Effects::default()) > 0.02, "{}", course_rad(&Effects::default()));
+    }
 
     #[test]
     fn fixes_a_second_apart_are_found_at_any_rate() {

@@ -17,6 +17,7 @@ pub(super) struct Made {
     scrubs: OnceLock<Vec<[f64; 2]>>,
     yaw_rates: OnceLock<Vec<Option<f64>>>,
     torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
+    off_scale: OnceLock<PerWheel<Vec<bool>>>,
 }
 
 /// A copy begins with nothing made: who copies a run's signals changes them, or asks of another machine.
@@ -76,5 +77,13 @@ impl Signals {
         first: impl FnOnce() -> [PerWheel<Samples>; 2],
     ) -> &[PerWheel<Samples>; 2] {
         self.made.torques_nm.get_or_init(first)
+    }
+
+    /// Where nobody knows the pressures of a cylinder. No knob changes what a frame tells at most.
+    pub(in crate::diagnosis) fn off_scale(
+        &self,
+        first: impl FnOnce() -> PerWheel<Vec<bool>>,
+    ) -> &PerWheel<Vec<bool>> {
+        self.made.off_scale.get_or_init(first)
     }
 }

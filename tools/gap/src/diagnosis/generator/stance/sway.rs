@@ -18,15 +18,17 @@ const NOW_S: f64 = 0.5;
 /// How errors of an angle change within seconds, rad: each beside whether the machine is calm, one an instant.
 ///
 /// `NaN` where there is none, and while the machine gains or loses speed, which the unit takes for a lean:
-/// what comes then is no part of the mean.
+/// what comes then is no part of the mean. Where that lasts longer than the mean reaches back, as under a controller
+/// that never holds its speed, what was before is not recent any more.
 pub(super) fn sways_rad(errors: impl Iterator<Item = (f64, bool)>) -> Samples {
     let mut means_rad: Option<[f64; 2]> = None;
+    let mut uneasy_s = 0.0;
     let sway = |(error_rad, is_calm): (f64, bool)| {
-        if !error_rad.is_finite() {
+        uneasy_s = if is_calm { 0.0 } else { uneasy_s + STEP_S };
+        if !error_rad.is_finite() || uneasy_s > RECENT_S {
             means_rad = None;
-            return f64::NAN;
         }
-        if !is_calm {
+        if !error_rad.is_finite() || !is_calm {
             return f64::NAN;
         }
         let [now, recent] = means_rad.unwrap_or([error_rad; 2]);
@@ -65,10 +67,21 @@ mod tests {
 
     #[test]
     fn what_a_machine_that_speeds_up_feels_is_forgotten() {
-        let felt = [[0.01; 20], [0.05; 20], [0.01; 20]].concat();
-        let sways = sways(&felt, |k| !(20..40).contains(&k));
-        assert!(sways[20..40].iter().all(|sway| sway.is_nan()));
-        assert!(sways[40..].iter().all(|sway| sway.abs() < 1e-12));
+        let felt = [[0.01; 10], [0.05; 10], [0.01; 10]].concat();
+        let sways = sways(&felt, |k| !(10..20).contains(&k));
+        assert!(sways[10..20].iter().all(|sway| sway.is_nan()));
+        assert!(sways[20..].iter().all(|sway| sway.abs() < 1e-12));
+    }
+
+    #[test]
+    fn what_was_before_seconds_of_unease_is_no_recent_mean() {
+        let after = |instants: usize| {
+            let errors = [vec![0.01; 10], vec![f64::MAX; instants], vec![0.03; 10]].concat();
+            let sways = sways(&errors, |k| !(10..10 + instants).contains(&k));
+            sways[10 + instants]
+        };
+        assert!(after(8) > 0.003, "{}", after(8));
+        assert_eq!(after(16), 0.0);
     }
 
     #[test]

@@ -72,35 +72,34 @@ impl<'a> Carrier<'a> {
     /// `share` of the most.
     pub(super) fn at(&self, instant: &Instant, share: f64) -> (Reach, f64) {
         let moments = self.moments(instant);
-        (moments.reach, moments.normal_n(self.holds_nm(&moments, share)))
+        let holds_nm = share * self.effects.wheels[self.wheel].standstill_drag.torque_nm;
+        let asked_nm = holds_nm - instant.wheels[self.wheel].torque_nm;
+        (moments.reach, moments.normal_n(self.taken_nm(&moments, asked_nm)))
     }
 
-    /// What its motor holds a wheel by that is asked for `share` of the most, Nm: no more than the
-    /// ground takes before the wheel slips.
-    fn holds_nm(&self, moments: &Moments, share: f64) -> f64 {
-        let asked_nm = share * self.effects.wheels[self.wheel].standstill_drag.torque_nm;
-        if asked_nm == 0.0 {
-            return 0.0;
-        }
+    /// What the ground takes of a torque against rolling that is asked of a wheel's motor, Nm: no more than its grip.
+    /// One in the air spins up until its motor turns it for nothing, whatever its circuit pushes the others by.
+    fn taken_nm(&self, moments: &Moments, asked_nm: f64) -> f64 {
         let grip_m = self.friction * self.parts.radius_m;
-        if asked_nm.abs() <= grip_m * moments.normal_n(asked_nm) {
-            return asked_nm;
+        if asked_nm.abs() > grip_m * moments.normal_n(asked_nm) {
+            // What is as large as the grip of the load that it makes itself.
+            let grip_m = grip_m.copysign(asked_nm);
+            let slips_nm =
+                grip_m * moments.free_nm / (moments.load_arm_m - moments.below_m * grip_m);
+            return if slips_nm * asked_nm > 0.0 {
+                slips_nm.clamp(-asked_nm.abs(), asked_nm.abs())
+            } else {
+                0.0
+            };
         }
-        // The hold that is as large as the grip of the load that it makes itself.
-        let grip_m = grip_m.copysign(asked_nm);
-        let slips_nm = grip_m * moments.unheld_nm / (moments.load_arm_m - moments.below_m * grip_m);
-        if slips_nm * asked_nm > 0.0 {
-            slips_nm.clamp(-asked_nm.abs(), asked_nm.abs())
-        } else {
-            0.0
-        }
+        asked_nm
     }
 
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,
     /// `drop + radius` below the pivot: the motor's torque is between wheel and arm. So does what resists its
     /// rolling, less the moment of the ground's own resistance about the axle.
     fn moments(&self, instant: &Instant) -> Moments {
-        let AtWheel { stroke_m, load_n, rod_n, torque_nm, rolls, .. } = instant.wheels[self.wheel];
+        let AtWheel { stroke_m, load_n, rod_n, rolls, .. } = instant.wheels[self.wheel];
         let sensing = self.sensing_at(instant.sample);
         let oil_n = sensing.gauge.load_n(load_n, rod_n);
         let cylinder_n = oil_n - self.seal.at_n(instant.sample);
@@ -111,7 +110,7 @@ impl<'a> Carrier<'a> {
         let resists_m = (below_m - (1.0 - self.inner_share) * extends) * self.resistance_m;
         Moments {
             reach: Reach { reach_m: pose.reach_m, drop_m: pose.drop_m },
-            unheld_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m - below_m * torque_nm,
+            free_nm: self.own_n * pose.reach_m + cylinder_n * pose.lever_m,
             below_m,
             load_arm_m: pose.reach_m - resists_m * rolls,
         }
@@ -121,18 +120,18 @@ impl<'a> Carrier<'a> {
 /// Moments about an arm's pivot at one instant.
 struct Moments {
     reach: Reach,
-    /// Of everything but the ground's push and an idle motor's hold, Nm.
-    unheld_nm: f64,
-    /// What a wheel's torque makes of itself about the pivot.
+    /// Of everything but the ground's push and the wheel's motor, Nm.
+    free_nm: f64,
+    /// What a torque against rolling makes of itself about the pivot.
     below_m: f64,
     /// What the ground's push acts by, m.
     load_arm_m: f64,
 }
 
 impl Moments {
-    /// What the wheel presses on the ground, N.
-    fn normal_n(&self, holds_nm: f64) -> f64 {
-        (self.unheld_nm + self.below_m * holds_nm) / self.load_arm_m
+    /// What the wheel presses on the ground, N, its motor turning it against rolling by `against_nm`.
+    fn normal_n(&self, against_nm: f64) -> f64 {
+        (self.free_nm + self.below_m * against_nm) / self.load_arm_m
     }
 }
 
@@ -168,6 +167,7 @@ fn seal(s: &Signals, schedule: EffectSchedule<'_>, wheel: Wheel) -> Seal {
 mod tests {
     use xt28_machine::Wheel;
 
+    use super::super::instants::instants;
     use super::*;
     use crate::diagnosis::belief::Base;
     use crate::diagnosis::generator::still::still;
@@ -199,6 +199,30 @@ mod tests {
             (load_n((&off).into(), 510) - 8.0e4).abs() > 2.0e3,
             "without a jump none is undone"
         );
+    }
+
+    /// On a slope the motors of a circuit push all the time, that of a wheel in the air against nothing.
+    #[test]
+    fn a_wheel_in_the_air_presses_nothing_whatever_its_circuit_pushes() {
+        let (machine, sound) = (Machine::xt28(), Effects::default());
+        let (s, parts) = (still(10), Parts::new(&machine, &sound));
+        let presses_n = |w: Wheel, load_n: f64, torque_nm: f64| {
+            let carrier = Carrier::new(&s, &machine, (&sound).into(), &parts, w, 1.0);
+            let at = AtWheel { stroke_m: 0.17, load_n, torque_nm, ..AtWheel::default() };
+            let mut instant = instants(&s, &machine)[0].clone();
+            instant.wheels[w] = at;
+            carrier.at(&instant, 0.0).1
+        };
+        for w in [Wheel::Fr, Wheel::Ml] {
+            let pose = machine.linkage().at_stroke(0.17);
+            let hangs_n = -own_n(&machine, &parts, w) * pose.reach_m / pose.lever_m;
+            for torque_nm in [-2.0e3, 0.0, 2.0e3] {
+                let n = presses_n(w, hangs_n, torque_nm);
+                assert!(n.abs() < 1.0, "{w}, {torque_nm} Nm: {n}");
+            }
+            let pushes_n = presses_n(w, 60.0e3, 2.0e3) - presses_n(w, 60.0e3, 0.0);
+            assert!(pushes_n.abs() > 1.0e3, "one on the ground does: {pushes_n}");
+        }
     }
 
     #[test]

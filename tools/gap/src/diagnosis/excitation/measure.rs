@@ -7,7 +7,7 @@ use xt28_sim::Effects;
 use xt28_sim::effects::Scope;
 
 use super::super::floor::Signal;
-use super::super::generator::{Generator, Residual, STEP_S};
+use super::super::generator::{Generator, Residual, SAMPLES_PER_RESIDUAL, STEP_S};
 use super::super::signals::{DT_S, Samples, Signals};
 
 /// An opening below this is a closed valve: the ECU's currents have no smaller step that flows.
@@ -29,7 +29,7 @@ pub(super) struct ArmUse {
     pub(super) moves_m: f64,
     /// The lesser of the ways that it went out and in, m.
     pub(super) turns_m: f64,
-    /// Range of its stroke while throttle was let go and the wheels stood, m.
+    /// Range of its stroke while throttle was let go and the wheels stood where how the machine stands is judged, m.
     pub(super) moves_standing_m: f64,
     /// Range of its load, N.
     pub(super) load_range_n: f64,
@@ -71,8 +71,9 @@ impl Excitation {
         machine: &Machine,
     ) -> Self {
         let most = |of: &dyn Fn(&Signals) -> f64| runs.clone().map(of).fold(0.0, f64::max);
+        let weighed: Vec<Vec<bool>> = runs.clone().map(|s| weighed(s, machine)).collect();
         Self {
-            arms: PerWheel::from_fn(|wheel| arm(runs.clone(), machine, wheel)),
+            arms: PerWheel::from_fn(|wheel| arm(runs.clone().zip(&weighed), machine, wheel)),
             openings: most(&openings),
             steers_rad: most(&|s| {
                 let turning = |&i: &usize| s.mean_wheel_speed_rad_s(i).abs() > STANDS_RAD_S;
@@ -176,9 +177,21 @@ fn judged_s<'a>(
     all
 }
 
-fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, machine: &Machine, wheel: Wheel) -> ArmUse {
+/// Whether the weight of the machine is judged, at each residual of a run: not on ground that is no plane.
+fn weighed(s: &Signals, machine: &Machine) -> Vec<bool> {
+    let mut all = Generator::Stance.residuals(s, machine, &Effects::default()).into_iter();
+    let weight = all.find(|residual| residual.signal == Signal::Weight);
+    weight.map_or_else(Vec::new, |weight| weight.values.iter().map(|n| n.is_finite()).collect())
+}
+
+/// What the arm of `wheel` did in runs, each beside where its weight is judged.
+fn arm<'a, 'b>(
+    runs: impl Iterator<Item = (&'a Signals, &'b Vec<bool>)>,
+    machine: &Machine,
+    wheel: Wheel,
+) -> ArmUse {
     let mut all = ArmUse::default();
-    for s in runs {
+    for (s, weighed) in runs {
         let (stroke, opening) = (&s.stroke_m[wheel], &s.opening[wheel]);
         let load = &s.cylinder_load_n[wheel];
         let (mut out_m, mut in_m) = (0.0, 0.0);
@@ -189,7 +202,9 @@ fn arm<'a>(runs: impl Iterator<Item = &'a Signals>, machine: &Machine, wheel: Wh
             }
         }
         let stands = |&i: &usize| {
-            s.throttle[i].abs() < LET_GO && s.mean_wheel_speed_rad_s(i).abs() < STANDS_RAD_S
+            s.throttle[i].abs() < LET_GO
+                && s.mean_wheel_speed_rad_s(i).abs() < STANDS_RAD_S
+                && weighed.get(i / SAMPLES_PER_RESIDUAL) == Some(&true)
         };
         let shut = |i: usize| opening[i].abs() < CLOSED;
         let judged_s = |generator: Generator| -> f64 {

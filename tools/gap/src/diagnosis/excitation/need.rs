@@ -18,7 +18,7 @@ pub(super) enum Need {
     ArmsMove(f64),
     /// Every arm out and in again, m each way.
     ArmsTurn(f64),
-    /// Some arm through a range while the machine stands, m.
+    /// Some arm through a range while the machine stands where that is judged, m.
     ArmsMoveStanding(f64),
     /// Every arm under loads that differ, N.
     LoadsDiffer(f64),
@@ -59,7 +59,10 @@ impl Need {
             Self::ArmsTurn(m) => idle(&did.arms, |arm| arm.turns_m < m)
                 .map(|who| format!("{who} through less than {:.0} mm both out and in", mm(m))),
             Self::ArmsMoveStanding(m) => none_of(&did.arms, |arm| arm.moves_standing_m >= m)
-                .then(|| format!("no arm moves by {:.0} mm while the machine stands", mm(m))),
+                .then(|| {
+                    let ground = "level ground or a known slope";
+                    format!("no arm moves by {:.0} mm while the machine stands on {ground}", mm(m))
+                }),
             Self::LoadsDiffer(n) => {
                 let still = Wheel::ALL.into_iter().filter(|w| did.arms[*w].load_range_n < n);
                 let still: Vec<&str> = still.map(Wheel::name).collect();

@@ -9,8 +9,8 @@ import numpy as np
 from xt28_mujoco.machine import Machine
 
 from .faults import NAMES, draw, once, pairs
-from .run import Run
 from .policy import drives as policy_drives
+from .run import Run
 from .scripts import RAMP, drives
 from .truth import Truth, tolerances
 from .wire import logged_database

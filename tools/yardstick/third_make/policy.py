@@ -1,7 +1,7 @@
 """Drives as a learnt controller makes them: to goals, level, and never quite still."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -54,11 +54,10 @@ class Policy:
     base_mm: float
     random: np.random.Generator
     ramp: bool = False
-    _next_s: float = 0.0
-    _level_mm: np.ndarray = field(default_factory=lambda: np.zeros(2))
-    _asked: tuple | None = None
 
     def __post_init__(self):
+        self._next_s, self._asked = 0.0, None
+        self._level_mm = np.zeros(2)
         self._strokes = Jitter(12.0, 1.5, N, self.random)
         self._drive = Jitter(1.0, 1.0, 2, self.random)
         self._target_mm = np.full(N, self.base_mm)
@@ -68,7 +67,7 @@ class Policy:
         """Targets, mm in steps of 2; throttle, %; front angle, deg."""
         if seen is None or time_s < 1.0:
             return self._steps(), 0.0, 0.0
-        if self._asked is None or time_s >= self._next_s - 1e-9:
+        if time_s >= self._next_s - 1e-9:
             self._next_s = time_s + PERIOD_S
             self._move(seen)
             self._asked = (self._steps(), *self._go(seen))

@@ -132,6 +132,7 @@ impl Generator {
             Self::SteerEcu(joint) => {
                 name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
             }
+            // The controllers' laws too: they tell what its currents leave open of a valve.
             Self::Joint(joint) => {
                 effect.block == Block::Steering && (joint == 1 || name != "rear-follower-lag")
             }

@@ -71,9 +71,9 @@ impl Excitation {
         machine: &Machine,
     ) -> Self {
         let most = |of: &dyn Fn(&Signals) -> f64| runs.clone().map(of).fold(0.0, f64::max);
-        let weighed: Vec<Vec<bool>> = runs.clone().map(|s| weighed(s, machine)).collect();
+        let whole: Vec<Vec<Residual>> = runs.clone().map(|s| of_whole(s, machine)).collect();
         Self {
-            arms: PerWheel::from_fn(|wheel| arm(runs.clone().zip(&weighed), machine, wheel)),
+            arms: PerWheel::from_fn(|wheel| arm(runs.clone().zip(&whole), machine, wheel)),
             openings: most(&openings),
             steers_rad: most(&|s| {
                 let turning = |&i: &usize| s.mean_wheel_speed_rad_s(i).abs() > STANDS_RAD_S;
@@ -91,7 +91,7 @@ impl Excitation {
             }),
             commands: runs.clone().map(commands).sum(),
             fixes: runs.clone().map(|s| s.fixes.len()).sum(),
-            judged_s: judged_s(runs, machine),
+            judged_s: judged_s(&whole),
         }
     }
 
@@ -150,48 +150,35 @@ impl ArmUse {
     }
 }
 
-/// For how long each signal of `generator` could be judged in a run, s.
-#[allow(clippy::cast_precision_loss)]
-fn judged_by(generator: Generator, s: &Signals, machine: &Machine) -> Vec<(Signal, f64)> {
-    let residuals = generator.residuals(s, machine, &Effects::default());
-    let judged = |residual: Residual| {
-        let count = residual.values.iter().filter(|value| value.is_finite()).count();
-        (residual.signal, count as f64 * STEP_S)
-    };
-    residuals.into_iter().map(judged).collect()
+/// What the generators say of a run that watch the whole machine.
+fn of_whole(s: &Signals, machine: &Machine) -> Vec<Residual> {
+    let all = [Generator::Drive, Generator::Stance, Generator::Travel];
+    all.into_iter().flat_map(|of| of.residuals(s, machine, &Effects::default())).collect()
 }
 
-/// For how long the signals that watch the whole machine could be judged, s.
-fn judged_s<'a>(
-    runs: impl Iterator<Item = &'a Signals>,
-    machine: &Machine,
-) -> BTreeMap<Signal, f64> {
+/// For how long a signal could be judged in a run, s.
+#[allow(clippy::cast_precision_loss)]
+fn told_s(residual: &Residual) -> f64 {
+    residual.values.iter().filter(|value| value.is_finite()).count() as f64 * STEP_S
+}
+
+/// For how long the signals of the whole machine could be judged in all runs, s.
+fn judged_s(runs: &[Vec<Residual>]) -> BTreeMap<Signal, f64> {
     let mut all = BTreeMap::new();
-    for s in runs {
-        for generator in [Generator::Drive, Generator::Stance, Generator::Travel] {
-            for (signal, judged_s) in judged_by(generator, s, machine) {
-                *all.entry(signal).or_insert(0.0) += judged_s;
-            }
-        }
+    for residual in runs.iter().flatten() {
+        *all.entry(residual.signal).or_insert(0.0) += told_s(residual);
     }
     all
 }
 
-/// Whether the weight of the machine is judged, at each residual of a run: not on ground that is no plane.
-fn weighed(s: &Signals, machine: &Machine) -> Vec<bool> {
-    let mut all = Generator::Stance.residuals(s, machine, &Effects::default()).into_iter();
-    let weight = all.find(|residual| residual.signal == Signal::Weight);
-    weight.map_or_else(Vec::new, |weight| weight.values.iter().map(|n| n.is_finite()).collect())
-}
-
-/// What the arm of `wheel` did in runs, each beside where its weight is judged.
+/// What the arm of `wheel` did in runs, each beside what is said of the whole machine.
 fn arm<'a, 'b>(
-    runs: impl Iterator<Item = (&'a Signals, &'b Vec<bool>)>,
+    runs: impl Iterator<Item = (&'a Signals, &'b Vec<Residual>)>,
     machine: &Machine,
     wheel: Wheel,
 ) -> ArmUse {
     let mut all = ArmUse::default();
-    for (s, weighed) in runs {
+    for (s, whole) in runs {
         let (stroke, opening) = (&s.stroke_m[wheel], &s.opening[wheel]);
         let load = &s.cylinder_load_n[wheel];
         let (mut out_m, mut in_m) = (0.0, 0.0);
@@ -201,14 +188,20 @@ fn arm<'a, 'b>(
                 if step > 0.0 { out_m += step } else { in_m -= step }
             }
         }
+        let weight = whole.iter().find(|residual| residual.signal == Signal::Weight);
+        // Not on ground that is no plane.
+        let is_weighed = |i: usize| {
+            let at = weight.and_then(|weight| weight.values.get(i / SAMPLES_PER_RESIDUAL));
+            at.is_some_and(|newtons| newtons.is_finite())
+        };
         let stands = |&i: &usize| {
             s.throttle[i].abs() < LET_GO
                 && s.mean_wheel_speed_rad_s(i).abs() < STANDS_RAD_S
-                && weighed.get(i / SAMPLES_PER_RESIDUAL) == Some(&true)
+                && is_weighed(i)
         };
         let shut = |i: usize| opening[i].abs() < CLOSED;
         let judged_s = |generator: Generator| -> f64 {
-            judged_by(generator, s, machine).into_iter().map(|(_, judged_s)| judged_s).sum()
+            generator.residuals(s, machine, &Effects::default()).iter().map(told_s).sum()
         };
         let one = ArmUse {
             moves_m: range(stroke.iter().copied()),

@@ -11,6 +11,9 @@ const COMMANDS: usize = 3;
 /// For how long what is judged on some ground alone must have been there, s.
 const JUDGED_S: f64 = 2.0;
 
+/// The ground on which the whole machine is judged.
+const GROUND: &str = "level ground or a known slope";
+
 /// One thing that the machine must have done; the number is the least that will do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Need {
@@ -60,8 +63,7 @@ impl Need {
                 .map(|who| format!("{who} through less than {:.0} mm both out and in", mm(m))),
             Self::ArmsMoveStanding(m) => none_of(&did.arms, |arm| arm.moves_standing_m >= m)
                 .then(|| {
-                    let ground = "level ground or a known slope";
-                    format!("no arm moves by {:.0} mm while the machine stands on {ground}", mm(m))
+                    format!("no arm moves by {:.0} mm while the machine stands on {GROUND}", mm(m))
                 }),
             Self::LoadsDiffer(n) => {
                 let still = Wheel::ALL.into_iter().filter(|w| did.arms[*w].load_range_n < n);
@@ -102,8 +104,8 @@ impl Need {
                 let is_s = did.judged_s.get(&signal).copied().unwrap_or(0.0);
                 (is_s < JUDGED_S).then(|| {
                     format!(
-                        "{signal} could be judged for {is_s:.1} s of {JUDGED_S:.0} s needed, on \
-                         level ground or a known slope and with loads on their scale"
+                        "{signal} could be judged for {is_s:.1} s of {JUDGED_S:.0} s needed, on {GROUND} \
+                         and with loads on their scale"
                     )
                 })
             }

@@ -85,7 +85,7 @@ pub(super) fn travel_errors(
             }
             if wheel_m_s > COURSE_M_S {
                 let ahead_m = machine.sensors.gnss_antenna_m[0] + lever_m[0];
-                let side = yaw_rate * ahead_m - creep_s * wheel_m_s * yaw_rate;
+                let side = yaw_rate * (ahead_m - creep_s * wheel_m_s);
                 let moved_m = cos * dy - sin * dx - beside_m[1];
                 angle = side / wheel_m_s - moved_m / (t1 - t0) / wheel_m_s;
             }

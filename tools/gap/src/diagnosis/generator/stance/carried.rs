@@ -81,18 +81,18 @@ impl<'a> Carrier<'a> {
     /// One in the air spins up until its motor turns it for nothing, whatever its circuit pushes the others by.
     fn taken_nm(&self, moments: &Moments, asked_nm: f64) -> f64 {
         let grip_m = self.friction * self.parts.radius_m;
-        if asked_nm.abs() > grip_m * moments.normal_n(asked_nm) {
-            // What is as large as the grip of the load that it makes itself.
-            let grip_m = grip_m.copysign(asked_nm);
-            let slips_nm =
-                grip_m * moments.free_nm / (moments.load_arm_m - moments.below_m * grip_m);
-            return if slips_nm * asked_nm > 0.0 {
-                slips_nm.clamp(-asked_nm.abs(), asked_nm.abs())
-            } else {
-                0.0
-            };
+        let slips = asked_nm.abs() > grip_m * moments.normal_n(asked_nm);
+        if !slips {
+            return asked_nm;
         }
-        asked_nm
+        // What is as large as the grip of the load that it makes itself.
+        let grip_m = grip_m.copysign(asked_nm);
+        let slips_nm = grip_m * moments.free_nm / (moments.load_arm_m - moments.below_m * grip_m);
+        if slips_nm * asked_nm > 0.0 {
+            slips_nm.clamp(-asked_nm.abs(), asked_nm.abs())
+        } else {
+            0.0
+        }
     }
 
     /// Moments about the arm's pivot. What the wheel pushes along the ground acts at its contact,

@@ -17,6 +17,7 @@ mod press;
 mod pump;
 mod rolling;
 mod scrub;
+mod side_slip;
 mod spool;
 mod stance;
 #[cfg(test)]
@@ -40,6 +41,7 @@ pub(super) use circuits::{PRESSURE_AT_TORQUE_MAX_PA, weights};
 pub(super) use controllers::STEER_WINDUP_DEG_S;
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
+pub(super) use traction::Turned;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 pub(super) const SAMPLES_PER_RESIDUAL: usize = 10;
@@ -132,9 +134,12 @@ impl Generator {
             Self::SteerEcu(joint) => {
                 name == "steer-gain" || (joint == 1 && name == "rear-follower-lag")
             }
-            // The controllers' laws too: they tell what its currents leave open of a valve.
+            // The controllers' laws too: they tell what its currents leave open of a valve. And ground on which
+            // tyres take less of a joint.
             Self::Joint(joint) => {
-                effect.block == Block::Steering && (joint == 1 || name != "rear-follower-lag")
+                let steers = effect.block == Block::Steering;
+                let scrubs = name == "slippery-ground";
+                scrubs || (steers && (joint == 1 || name != "rear-follower-lag"))
             }
             Self::Drive => {
                 effect.block == Block::Drive

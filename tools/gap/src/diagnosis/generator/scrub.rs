@@ -5,6 +5,8 @@
 //! them is one number, along the pattern of side forces that is balanced in itself. Tyres answer it
 //! as bristles do: they deflect until they slide, and let go as the wheels roll on.
 
+use std::borrow::Cow;
+
 use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
 use xt28_sim::Effects;
 
@@ -29,7 +31,8 @@ pub(super) fn scrub_nm(
     joint: usize,
 ) -> Samples {
     let most_nm = most_nm(machine, effects)[joint];
-    scrubs(signals, machine).iter().map(|[deflection, _]| most_nm * deflection).collect()
+    let scrubs = scrubs(signals, machine, effects);
+    scrubs.iter().map(|[deflection, _]| most_nm * deflection).collect()
 }
 
 /// Torque that each wheel needs against the same tyres, Nm, forward > 0.
@@ -43,7 +46,7 @@ pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effe
     let most_nm = most_nm(machine, effects);
     let most_n = 0.5 * (most_nm[0] / lever_m[0] + most_nm[1] / lever_m[1]);
     let wheel_nm = most_n * machine.wheels.radius_m / 6.0;
-    scrubs(signals, machine)
+    scrubs(signals, machine, effects)
         .iter()
         .map(|[deflection, ahead]| wheel_nm * deflection * ahead)
         .collect()
@@ -60,20 +63,66 @@ fn most_nm(machine: &Machine, effects: &Effects) -> [f64; 2] {
 
 /// Deflection along the pattern as a share of the one at which the tyres slide, -1 to 1, and slip along
 /// the pattern for each metre that the machine goes ahead with joints that stand; sample by sample.
-fn scrubs<'a>(signals: &'a Signals, machine: &Machine) -> &'a [[f64; 2]] {
-    let first = || {
-        let axles = Axles::new(machine);
-        let mut deflection_m = 0.0_f64;
-        let step = |i: usize| {
-            let angle = [0, 1].map(|j| signals.joint_rad[j][i]);
-            let rate = [0, 1].map(|j| signals.joint_rate_rad_s[j][i]);
-            let ahead = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
-            let slip = axles.misfit_m_s(angle, rate, ahead);
-            deflection_m += DT_S * (slip - ahead.abs() / RELAXATION_M * deflection_m);
-            deflection_m = deflection_m.clamp(-SLIDES_M, SLIDES_M);
-            [deflection_m / SLIDES_M, axles.misfit_m_s(angle, [0.0; 2], 1.0)]
-        };
-        (0..signals.len).map(step).collect()
+fn scrubs<'a>(signals: &'a Signals, machine: &Machine, effects: &Effects) -> Cow<'a, [[f64; 2]]> {
+    let lets_go_per_s = lets_go_per_s(machine, effects);
+    if lets_go_per_s > 0.0 {
+        return deflections(signals, machine, lets_go_per_s).into();
+    }
+    signals.scrubs(|| deflections(signals, machine, 0.0)).into()
+}
+
+/// The same of tyres that let go of `lets_go_per_s` of their deflection while they stand.
+fn deflections(signals: &Signals, machine: &Machine, lets_go_per_s: f64) -> Vec<[f64; 2]> {
+    let axles = Axles::new(machine);
+    let mut deflection_m = 0.0_f64;
+    let step = |i: usize| {
+        let angle = [0, 1].map(|j| signals.joint_rad[j][i]);
+        let rate = [0, 1].map(|j| signals.joint_rate_rad_s[j][i]);
+        let ahead = signals.mean_wheel_speed_rad_s(i) * machine.wheels.radius_m;
+        let slip = axles.misfit_m_s(angle, rate, ahead);
+        deflection_m += DT_S * (slip - ahead.abs() / RELAXATION_M * deflection_m);
+        deflection_m /= 1.0 + DT_S * lets_go_per_s;
+        deflection_m = deflection_m.clamp(-SLIDES_M, SLIDES_M);
+        [deflection_m / SLIDES_M, axles.misfit_m_s(angle, [0.0; 2], 1.0)]
     };
-    signals.scrubs(first)
+    (0..signals.len).map(step).collect()
+}
+
+/// How fast tyres that creep let go of what they are deflected by: as stiff as they are on firm ground, they give way
+/// in proportion to their force.
+fn lets_go_per_s(machine: &Machine, effects: &Effects) -> f64 {
+    let creep_m_s_n =
+        effects.wheels.iter().map(|(_, e)| e.slippery_ground.creep_m_s_n).sum::<f64>();
+    let axle_n = machine.wheels.friction * machine.mass_kg() * GRAVITY_M_S2 / 3.0;
+    let share = 0.5 * (SLIDES_AT[0] + SLIDES_AT[1]);
+    // Both wheels of an axle bear its force.
+    share * axle_n / SLIDES_M * 0.5 * creep_m_s_n / 6.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::still::still;
+    use super::*;
+
+    #[test]
+    fn tyres_that_creep_let_go_of_what_a_joint_deflects_them_by() {
+        let (machine, mut s) = (Machine::xt28(), still(4));
+        for i in 0..s.len {
+            s.joint_rad[0][i] = 0.05 * i as f64 * DT_S;
+            s.joint_rate_rad_s[0][i] = 0.05;
+        }
+        let after = |creep_m_s_n: f64| {
+            let mut effects = Effects::default();
+            for w in Wheel::ALL {
+                effects.wheels[w].slippery_ground.creep_m_s_n = creep_m_s_n;
+            }
+            scrub_nm(&s, &machine, &effects, 0)[350].abs()
+        };
+        let [firm, creeping] = [0.0, 1.0e-4].map(after);
+        assert!(firm > 10.0e3 && creeping < 0.1 * firm, "{firm}, where they creep {creeping}");
+        // Both wheels of an axle slip by their share of its force.
+        let slip_m_s = Axles::new(&machine).misfit_m_s([0.0; 2], [0.05, 0.0], 0.0).abs();
+        let wanted = slip_m_s * 2.0 / 1.0e-4 * Axles::new(&machine).lever_m();
+        assert!((creeping / wanted - 1.0).abs() < 0.1, "{creeping}, not {wanted}");
+    }
 }

@@ -8,7 +8,7 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};
 
 use super::circuits::{is_of_first, motor_nm, weights};
-use crate::diagnosis::signals::{SMOOTHED, Samples, Signals, smooth};
+use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals, smooth};
 
 /// Push over friction up to which a wheel surely holds, and from which on it surely slides: pressures come
 /// twenty times a second, and friction differs from place to place (assumed).
@@ -19,15 +19,28 @@ const CAUGHT_M_S: f64 = 0.1;
 const CAUGHT_S: f64 = 0.5;
 /// Speed over which rolling resistance changes its sign, rad/s (assumed).
 pub(super) const TURNS_RAD_S: f64 = 0.05;
+/// Samples before and after one over which a wheel is seen to spin up.
+const SPUN: usize = 5;
 /// Samples from one look to the next where a push that smooth wheel speeds tell before it is there is sought.
 const APART: usize = 10;
 
-/// Torques of the motors on their wheels, Nm, as they are and as smooth as the wheel speeds: by their circuit's
-/// pressures and the trim of each wheel; none where no pressures are known.
-fn torques_nm<'a>(s: &'a Signals, machine: &Machine) -> &'a [PerWheel<Samples>; 2] {
-    s.torques_nm(|| {
+/// What a run's wheels are turned by, as each is and as smooth as the wheel speeds.
+#[derive(Debug)]
+pub(in crate::diagnosis) struct Turned {
+    /// Torques of the motors, Nm: by their circuit's pressures and the trim of each wheel; none where no pressures
+    /// are known.
+    torque_nm: PerWheel<Samples>,
+    /// The same, smooth.
+    smooth_nm: PerWheel<Samples>,
+    /// Which way each turns, smooth: 1 forward, -1 back, none at rest. What resists its rolling is smooth so too.
+    smooth_turns: PerWheel<Samples>,
+}
+
+/// What the wheels of a run are turned by.
+fn turned<'a>(s: &'a Signals, machine: &Machine) -> &'a Turned {
+    s.turned(|| {
         let first = PerWheel::from_fn(|w| is_of_first(machine, w));
-        let now_nm = PerWheel::from_fn(|w| {
+        let torque_nm = PerWheel::from_fn(|w| {
             let nm = |i| {
                 let weights = weights(s, machine, i);
                 let of = Wheel::ALL.into_iter().filter(|other| first[*other] == first[w]);
@@ -38,9 +51,22 @@ fn torques_nm<'a>(s: &'a Signals, machine: &Machine) -> &'a [PerWheel<Samples>; 
             };
             (0..s.len).map(nm).collect::<Samples>()
         });
-        let smooth_nm = PerWheel::from_fn(|w| smooth(&now_nm[w]));
-        [now_nm, smooth_nm]
+        let turns = |w| s.wheel_speed_rad_s[w].iter().map(|speed| (speed / TURNS_RAD_S).tanh());
+        Turned {
+            smooth_nm: PerWheel::from_fn(|w| smooth(&torque_nm[w])),
+            smooth_turns: PerWheel::from_fn(|w| smooth(&turns(w).collect())),
+            torque_nm,
+        }
     })
+}
+
+/// Torque that spins a wheel up at sample `i` and pushes nothing, Nm.
+fn spins_up_nm(s: &Signals, machine: &Machine, w: Wheel, i: usize) -> f64 {
+    let speed_rad_s = &s.smooth_wheel_speed_rad_s[w];
+    let (from, to) = (i.saturating_sub(SPUN), (i + SPUN).min(speed_rad_s.len() - 1));
+    let gained_rad_s = speed_rad_s[to] - speed_rad_s[from];
+    let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+    inertia_kg_m2 * gained_rad_s / ((to - from).max(1) as f64 * DT_S)
 }
 
 /// The largest of `torque_nm` that shows in a smooth speed at sample `i`.
@@ -76,17 +102,17 @@ impl Traction {
         i: usize,
         (before, since_s): (Option<&Self>, f64),
     ) -> Self {
-        let [now_nm, smooth_nm] = torques_nm(s, machine);
+        let Turned { torque_nm, smooth_nm, smooth_turns } = turned(s, machine);
         let wheels = &machine.wheels;
         let of = |w| &effects.wheels[w].slippery_ground;
         let resists_n = PerWheel::from_fn(|w| {
-            let turns = (s.smooth_wheel_speed_rad_s[w][i] / TURNS_RAD_S).tanh();
             let added = effects.wheels[w].rolling_resistance.added;
-            (wheels.rolling_resistance + added) * normal_n[w] * turns
+            (wheels.rolling_resistance + added) * normal_n[w] * smooth_turns[w][i]
         });
         let by_n = |nm: f64, w| nm / wheels.radius_m - resists_n[w];
-        let force_n = PerWheel::from_fn(|w| by_n(smooth_nm[w][i], w));
-        let peak_n = PerWheel::from_fn(|w| by_n(peak_nm(&now_nm[w], i), w));
+        let force_n =
+            PerWheel::from_fn(|w| by_n(smooth_nm[w][i] - spins_up_nm(s, machine, w, i), w));
+        let peak_n = PerWheel::from_fn(|w| by_n(peak_nm(&torque_nm[w], i), w));
         let most_n = PerWheel::from_fn(|w| wheels.friction * of(w).friction_factor * normal_n[w]);
         let pushed = PerWheel::from_fn(|w| {
             let over = peak_n[w].abs() / most_n[w].max(1.0);
@@ -105,10 +131,14 @@ impl Traction {
         Self { force_n, holds, creeps_m_s, most_n, slid_n, caught: PerWheel::splat(1.0) }
     }
 
+    /// What the ground carries of each wheel's push, N.
+    pub(super) fn carried_n(&self) -> PerWheel<f64> {
+        PerWheel::from_fn(|w| self.force_n[w].clamp(-self.most_n[w], self.most_n[w]))
+    }
+
     /// How fast what the ground carries speeds `mass_kg` up, m/s^2.
     pub(super) fn speeds_up_m_s2(&self, mass_kg: f64) -> f64 {
-        let carried = |(w, most_n): (_, &f64)| self.force_n[w].clamp(-most_n, *most_n);
-        self.most_n.iter().map(carried).sum::<f64>() / mass_kg
+        self.carried_n().sum() / mass_kg
     }
 
     /// What is left of a wheel's error, the speed that it should have less the one it has, m/s: one that slides
@@ -187,5 +217,38 @@ mod tests {
             traction.told_m_s(Wheel::Fr, 0.0);
         }
         assert_eq!(traction.told_m_s(Wheel::Fr, -0.5), -0.5);
+    }
+
+    #[test]
+    fn what_spins_a_wheel_up_pushes_nothing() {
+        let (machine, mut s) = (Machine::xt28(), pushed(0.0));
+        for w in Wheel::ALL {
+            let gains = (0..s.len).map(|i| 2.0 * i as f64 * DT_S);
+            s.smooth_wheel_speed_rad_s[w] = gains.collect();
+        }
+        let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+        let wanted_n = -2.0 * inertia_kg_m2 / machine.wheels.radius_m;
+        let push_n = at(&s, &on_ice(0.4), 500, None).carried_n()[Wheel::Ml];
+        assert!((push_n / wanted_n - 1.0).abs() < 1e-6, "{push_n}, not {wanted_n}");
+    }
+
+    /// Smooth speeds tell a start before it is there. What resists the rolling does not come before it rolls.
+    #[test]
+    fn what_resists_comes_no_earlier_than_what_pushes() {
+        let (machine, mut s) = (Machine::xt28(), pushed(0.0));
+        let resists_nm = machine.wheels.rolling_resistance * PRESSES_N * machine.wheels.radius_m;
+        let over_pa = resists_nm / machine.wheels.torque_max_nm * PRESSURE_AT_TORQUE_MAX_PA;
+        for forward in [1, 3] {
+            s.pump_pressure_pa[forward][500..].fill(over_pa);
+        }
+        for w in Wheel::ALL {
+            s.wheel_speed_rad_s[w][500..].fill(1.0);
+            // Smooth, it turns from 4.7 s on.
+            s.smooth_wheel_speed_rad_s[w][470..].fill(1.0);
+        }
+        for i in [485, 500, 515, 600] {
+            let push_n = at(&s, &on_ice(0.4), i, None).carried_n()[Wheel::Ml];
+            assert!(push_n.abs() < 0.01 * resists_nm, "{push_n} N at sample {i}");
+        }
     }
 }

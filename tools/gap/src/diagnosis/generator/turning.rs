@@ -14,6 +14,7 @@ use super::axles::Axles;
 use super::grade::Grade;
 use super::press::{axles_n, own_n};
 use super::rolling::{self, wheel_kinematics};
+use super::side_slip::SideSlip;
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
@@ -59,7 +60,7 @@ pub(super) fn yaw_rate_error_rad_s(
     if s.headings.is_empty() || Grade::known(s).is_none() {
         return vec![f64::NAN; count];
     }
-    let said = said_by_joints(s, machine, &Antenna::new(schedule));
+    let said = said_by_joints(s, machine, schedule);
     let at_s = |k: usize| (k as f64 + 0.5) * SAMPLES_PER_RESIDUAL as f64 * DT_S;
     let read = s.yaw_rates(|| (0..count).map(|k| rate_read(s, at_s(k))).collect());
     let turns = read.iter().enumerate().map(|(k, read)| Some([around(&said, at_s(k))?, (*read)?]));
@@ -92,7 +93,8 @@ fn share_turned<'a>(turns: impl Iterator<Item = &'a [f64; 2]>) -> f64 {
 
 /// Rate at which the front frame turns by joints and speed over ground, rad/s, at each look, by the clock of
 /// the receiver; `NaN` where it is not told.
-fn said_by_joints(s: &Signals, machine: &Machine, antenna: &Antenna) -> Samples {
+fn said_by_joints(s: &Signals, machine: &Machine, schedule: EffectSchedule<'_>) -> Samples {
+    let (antenna, slip) = (Antenna::new(schedule), SideSlip::new(s, machine, schedule.effects));
     let axles = Axles::new(machine);
     let parts = Parts::new(machine, &Effects::default());
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
@@ -101,8 +103,9 @@ fn said_by_joints(s: &Signals, machine: &Machine, antenna: &Antenna) -> Samples 
     let at = |k: usize| {
         let at_s = k as f64 * LOOK_S;
         let ahead_m_s =
-            ahead_m_s(s, antenna, at_s).filter(|ahead_m_s| ahead_m_s.abs() > ROLLING_M_S);
-        let i = ((at_s - antenna.late_s(at_s)) / DT_S).round().max(0.0) as usize;
+            ahead_m_s(s, &antenna, at_s).filter(|ahead_m_s| ahead_m_s.abs() > ROLLING_M_S);
+        let then_s = at_s - antenna.late_s(at_s);
+        let i = (then_s / DT_S).round().max(0.0) as usize;
         let moves = kinematics.get(i / LOOK);
         let (Some(ahead_m_s), Some(moves)) = (ahead_m_s, moves) else { return f64::NAN };
         let load_n = PerWheel::from_fn(|w| s.cylinder_load_n[w][i]);
@@ -111,7 +114,9 @@ fn said_by_joints(s: &Signals, machine: &Machine, antenna: &Antenna) -> Samples 
             [&s.joint_rad, &s.joint_rate_rad_s].map(|of| [0, 1].map(|joint: usize| of[joint][i]));
         // Where the receiver gets later, its clock stands still.
         let passes = antenna.passed_s([at_s - LOOK_S, at_s]) / LOOK_S;
-        passes * axles.rolling_under(pressed_n, angle, rate, ahead_m_s).turn_rad_s[0]
+        let turn = |pressed_n| axles.rolling_under(pressed_n, angle, rate, ahead_m_s).turn_rad_s[0];
+        let slipping = |slip: &SideSlip| turn(slip.holds_n_s_m(then_s)) + slip.turn_rad_s(then_s);
+        passes * slip.as_ref().map_or_else(|| turn(pressed_n), slipping)
     };
     (0..looks).map(at).collect()
 }

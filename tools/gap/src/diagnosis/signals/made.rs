@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 
 use xt28_machine::PerWheel;
 
-use super::{Samples, Signals};
+use super::Signals;
+use crate::diagnosis::generator::Turned;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::kinematics::Kinematics;
 
@@ -16,7 +17,7 @@ pub(super) struct Made {
     kinematics: OnceLock<Vec<Kinematics>>,
     scrubs: OnceLock<Vec<[f64; 2]>>,
     yaw_rates: OnceLock<Vec<Option<f64>>>,
-    torques_nm: OnceLock<[PerWheel<Samples>; 2]>,
+    turned: OnceLock<Turned>,
     off_scale: OnceLock<PerWheel<Vec<bool>>>,
 }
 
@@ -70,13 +71,10 @@ impl Signals {
         self.made.yaw_rates.get_or_init(first)
     }
 
-    /// Torques of the motors on their wheels, Nm, as they are and as smooth as wheel speeds. They need of a
-    /// machine only its circuits and what torque their pressure makes.
-    pub(in crate::diagnosis) fn torques_nm(
-        &self,
-        first: impl FnOnce() -> [PerWheel<Samples>; 2],
-    ) -> &[PerWheel<Samples>; 2] {
-        self.made.torques_nm.get_or_init(first)
+    /// What turns the wheels and resists them. That needs of a machine only its circuits and what torque their
+    /// pressure makes.
+    pub(in crate::diagnosis) fn turned(&self, first: impl FnOnce() -> Turned) -> &Turned {
+        self.made.turned.get_or_init(first)
     }
 
     /// Where nobody knows the pressures of a cylinder. No knob changes what a frame tells at most.

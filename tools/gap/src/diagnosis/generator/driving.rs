@@ -12,9 +12,9 @@ use xt28_sim::{Drive, DriveInput, Effects, Parts};
 use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuit_means, circuits_pa};
 use super::grade::{Grade, climbs};
 use super::press::{normals_n, own_n};
-use super::rolling::{SAMPLES_PER_LOOK, rolling_errors, wheel_kinematics};
+use super::rolling::{CARRYING_N, SAMPLES_PER_LOOK, rolling_errors, wheel_kinematics};
 use super::scrub::scrub_drag_nm;
-use super::traction::TURNS_RAD_S;
+use super::traction::{TURNS_RAD_S, mean_torque_nm};
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the block did less what was measured.
@@ -32,6 +32,10 @@ pub(super) struct DriveErrors {
 const DRAWN_S: f64 = 0.25;
 /// The frames pitch on their arms as the machine speeds up: forces balance over this time only, s.
 const FORCE_S: f64 = 2.0;
+
+/// How many times wider the difference of the circuits' pressures is to be taken while a wheel is in the air: that one
+/// gains speed faster than a log of it tells (assumed).
+const LIFTED: f64 = 2.0;
 
 /// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
@@ -86,6 +90,9 @@ fn pressure_errors(
                 (over[0] - over[1]) / 2.0,
                 out.power_share,
             );
+            if is_lifted(signals, i) {
+                difference_pa /= LIFTED;
+            }
             let share = (since_s / DRAWN_S).min(1.0);
             state.mean_torque_nm -= share * nm_per_pa * common_pa;
             since_s = 0.0;
@@ -127,12 +134,16 @@ fn force_error_nm(
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
     let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
     let carried_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0;
-    // What the machine travels by, as a speed of its wheels; where the ground holds it is theirs.
+    // What the machine travels by. Wheels tell that where all of them hold on to the ground.
     let slips = effects.wheels.iter().any(|(_, e)| e.slippery_ground != SlipperyGround::default());
-    let travels_m_s = slips.then(|| rolling_errors(signals, machine, effects).ahead_m_s);
+    let travels_m_s = if slips {
+        &rolling_errors(signals, machine, effects).ahead_m_s
+    } else {
+        signals.travels_m_s(|| rolling_errors(signals, machine, &Effects::default()).ahead_m_s)
+    };
+    let parts_from = |i: usize| slips || is_lifted(signals, i);
     let weight_nm = mass_kg * GRAVITY_M_S2 * w.radius_m / 6.0;
     let added = added_resistance(signals, machine, effects);
-    let nm_per_pa = w.torque_max_nm / PRESSURE_AT_TORQUE_MAX_PA;
     let end = signals.len.saturating_sub(1);
     let scrub_nm = scrub_drag_nm(signals, machine, effects);
     let mut error = 0.0;
@@ -144,18 +155,19 @@ fn force_error_nm(
                 #[allow(clippy::cast_precision_loss)] // ten samples
                 let over_s = (to - from).max(1) as f64 * DT_S;
                 let speeds_up = (mean(to) - mean(from)) / over_s;
-                let [first, second] = circuits_pa(signals, i);
                 let rolls = (mean(i) / TURNS_RAD_S).tanh();
                 let drag_nm = (w.rolling_resistance + added[i / SAMPLES_PER_LOOK]) * weight_nm;
-                let travels_up = travels_m_s
-                    .as_ref()
-                    .map_or(speeds_up, |m_s| (m_s[to] - m_s[from]) / w.radius_m / over_s);
+                let travels_up = if parts_from(from) || parts_from(to) {
+                    (travels_m_s[to] - travels_m_s[from]) / w.radius_m / over_s
+                } else {
+                    speeds_up
+                };
                 let apart = carried_kg_m2 * travels_up
                     + wheel_kg_m2 * speeds_up
                     + drag_nm * rolls
                     + weight_nm * climbs(signals, machine, effects, ground, i)
                     + scrub_nm[i]
-                    - nm_per_pa * (first + second) / 2.0;
+                    - mean_torque_nm(signals, machine, i);
                 // Whether idle motors brake wheels that still roll is a matter of makes.
                 let idle_nm = idle_nm[i].min(w.friction * weight_nm);
                 let brakes_nm = idle_nm * rolls;
@@ -169,6 +181,12 @@ fn force_error_nm(
         })
         .collect();
     moving_mean(&errors, FORCE_S)
+}
+
+/// Whether arms hold a wheel too high at sample `i` for it to turn as the machine travels, which others tell then.
+fn is_lifted(signals: &Signals, i: usize) -> bool {
+    let carries = |w: &Wheel| signals.cylinder_load_n[*w][i] > CARRYING_N;
+    (1..6).contains(&Wheel::ALL.iter().filter(|w| carries(w)).count())
 }
 
 /// What is added to the coefficient of rolling resistance, mean of the wheels, each counted by what it presses with;
@@ -196,6 +214,7 @@ fn added_resistance(signals: &Signals, machine: &Machine, effects: &Effects) -> 
 #[cfg(test)]
 mod tests {
     use xt28_machine::Axle;
+    use xt28_sim::slip_trim_nm;
 
     use super::super::press::normal_n;
     use super::super::still::still;
@@ -296,6 +315,43 @@ mod tests {
         assert!(front_n > 0.5 * all_n, "{front_n} of {all_n}");
         assert!(left_nm(Axle::Front) < 1.0, "{}", left_nm(Axle::Front));
         assert!(left_nm(Axle::Rear) > 300.0, "{}", left_nm(Axle::Rear));
+    }
+
+    /// Torque not accounted for, Nm, of a machine that rolls at 1 rad/s while MR, in the air, turns at `spins_rad_s` and
+    /// gains `gains_rad_s2`.
+    fn left_beside_one_in_the_air_nm(spins_rad_s: f64, gains_rad_s2: f64) -> f64 {
+        let (machine, mut s) = (Machine::xt28(), still(10));
+        for w in Wheel::ALL {
+            s.cylinder_load_n[w].fill(if w == Wheel::Mr { 0.0 } else { 70.0e3 });
+            for i in 0..s.len {
+                let since_s = f64::from(u32::try_from(i).unwrap()) * DT_S - 5.0;
+                let speed = if w == Wheel::Mr { spins_rad_s + gains_rad_s2 * since_s } else { 1.0 };
+                s.wheel_speed_rad_s[w][i] = speed;
+                s.smooth_wheel_speed_rad_s[w][i] = speed;
+            }
+        }
+        // What spins MR up is the torque of its circuit less its trim; the others bear what resists.
+        let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+        let trim_nm = slip_trim_nm((spins_rad_s - 1.0) * 2.0 / 3.0);
+        let second_nm = trim_nm + inertia_kg_m2 * gains_rad_s2;
+        let weight_nm = machine.mass_kg() * GRAVITY_M_S2 * machine.wheels.radius_m;
+        let others_nm = second_nm - slip_trim_nm((1.0 - spins_rad_s) / 3.0);
+        let first_nm = (machine.wheels.rolling_resistance * weight_nm - 2.0 * others_nm) / 3.0;
+        for (sides, nm) in [([0, 1], first_nm), ([2, 3], second_nm)] {
+            let over_pa = nm / machine.wheels.torque_max_nm * PRESSURE_AT_TORQUE_MAX_PA;
+            s.pump_pressure_pa[sides[usize::from(nm > 0.0)]].fill(over_pa.abs());
+        }
+        s.is_fresh_pump_pressure.fill(true);
+        let errors = force_error_nm(&s, &machine, &Effects::default(), &vec![0.0; s.len]);
+        errors[500].abs()
+    }
+
+    #[test]
+    fn a_wheel_in_the_air_neither_pushes_nor_tells_how_the_machine_speeds_up() {
+        for (spins_rad_s, gains_rad_s2) in [(1.0, 0.0), (2.5, 0.0), (2.5, 0.4)] {
+            let left_nm = left_beside_one_in_the_air_nm(spins_rad_s, gains_rad_s2);
+            assert!(left_nm < 30.0, "{left_nm} Nm at {spins_rad_s} rad/s, {gains_rad_s2} rad/s^2");
+        }
     }
 
     /// Largest error of the circuits' pressures, Pa, where BR spins at twice the speed of the others and its motor

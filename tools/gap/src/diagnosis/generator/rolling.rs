@@ -29,7 +29,7 @@ pub(super) struct RollingErrors {
 }
 
 /// A wheel whose cylinder carries less tells nothing of the machine's speed, N (assumed).
-const CARRYING_N: f64 = 8_000.0;
+pub(super) const CARRYING_N: f64 = 8_000.0;
 /// Torque at which a tyre creeps by as much as else separates two models, Nm (seen on the nominal logs
 /// of a second plant: 0.1 m/s at 10 kNm).
 const CREEPS_NM: f64 = 400.0;

@@ -92,6 +92,12 @@ pub(super) struct Traction {
     caught: PerWheel<f64>,
 }
 
+/// Torque that the motors have at sample `i`, mean of all wheels, Nm: what a wheel in the air is held back by its circuit's
+/// others have the more.
+pub(super) fn mean_torque_nm(s: &Signals, machine: &Machine, i: usize) -> f64 {
+    turned(s, machine).torque_nm.iter().map(|(_, nm)| nm[i]).sum::<f64>() / 6.0
+}
+
 impl Traction {
     /// At sample `i`, where wheels press with `normal_n`, `since_s` after it was `before`.
     pub(super) fn new(

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use xt28_machine::PerWheel;
 
-use super::Signals;
+use super::{Samples, Signals};
 use crate::diagnosis::generator::Turned;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::kinematics::Kinematics;
@@ -18,6 +18,7 @@ pub(super) struct Made {
     scrubs: OnceLock<Vec<[f64; 2]>>,
     yaw_rates: OnceLock<Vec<Option<f64>>>,
     turned: OnceLock<Turned>,
+    travels_m_s: OnceLock<Samples>,
     off_scale: OnceLock<PerWheel<Vec<bool>>>,
 }
 
@@ -75,6 +76,11 @@ impl Signals {
     /// pressure makes.
     pub(in crate::diagnosis) fn turned(&self, first: impl FnOnce() -> Turned) -> &Turned {
         self.made.turned.get_or_init(first)
+    }
+
+    /// Speed of the front axle that sound wheels say, m/s. They need of a machine only its axles, joints and wheels.
+    pub(in crate::diagnosis) fn travels_m_s(&self, first: impl FnOnce() -> Samples) -> &Samples {
+        self.made.travels_m_s.get_or_init(first)
     }
 
     /// Where nobody knows the pressures of a cylinder. No knob changes what a frame tells at most.

@@ -54,11 +54,15 @@ pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effe
 
 /// Torque against each joint while the tyres slide, Nm.
 fn most_nm(machine: &Machine, effects: &Effects) -> [f64; 2] {
-    let grip: f64 =
-        Wheel::ALL.iter().map(|w| effects.wheels[*w].slippery_ground.friction_factor).sum();
-    let axle_n = machine.mass_kg() * GRAVITY_M_S2 / 3.0;
-    let side_n = machine.wheels.friction * grip / 6.0 * axle_n;
+    let side_n = grips_n(machine, effects);
     SLIDES_AT.map(|share| share * side_n * Axles::new(machine).lever_m())
+}
+
+/// What the ground grips an axle by, N.
+fn grips_n(machine: &Machine, effects: &Effects) -> f64 {
+    let of = |w: &Wheel| effects.wheels[*w].slippery_ground.friction_factor / 6.0;
+    let friction = machine.wheels.friction * Wheel::ALL.iter().map(of).sum::<f64>();
+    friction * machine.mass_kg() * GRAVITY_M_S2 / 3.0
 }
 
 /// Deflection along the pattern as a share of the one at which the tyres slide, -1 to 1, and slip along
@@ -88,15 +92,14 @@ fn deflections(signals: &Signals, machine: &Machine, lets_go_per_s: f64) -> Vec<
     (0..signals.len).map(step).collect()
 }
 
-/// How fast tyres that creep let go of what they are deflected by: as stiff as they are on firm ground, they give way
-/// in proportion to their force.
+/// How fast tyres that creep let go of what they are deflected by: as stiff as they slide late, they give way in
+/// proportion to their force.
 fn lets_go_per_s(machine: &Machine, effects: &Effects) -> f64 {
     let creep_m_s_n =
-        effects.wheels.iter().map(|(_, e)| e.slippery_ground.creep_m_s_n).sum::<f64>();
-    let axle_n = machine.wheels.friction * machine.mass_kg() * GRAVITY_M_S2 / 3.0;
+        effects.wheels.iter().map(|(_, e)| e.slippery_ground.creep_m_s_n).sum::<f64>() / 6.0;
     let share = 0.5 * (SLIDES_AT[0] + SLIDES_AT[1]);
     // Both wheels of an axle bear its force.
-    share * axle_n / SLIDES_M * 0.5 * creep_m_s_n / 6.0
+    share * grips_n(machine, effects) / SLIDES_M * 0.5 * creep_m_s_n
 }
 
 #[cfg(test)]

@@ -43,6 +43,7 @@ mod two_looks;
 mod unshrunk;
 mod vague_laws;
 mod verdict;
+mod wheel_torques;
 
 pub use agreement::{
     AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale, Swap,

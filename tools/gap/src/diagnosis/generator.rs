@@ -11,6 +11,7 @@ mod current_step;
 mod driving;
 mod grade;
 mod joints;
+mod lifted;
 mod loads;
 mod position_control;
 mod press;
@@ -41,7 +42,6 @@ pub(super) use circuits::{PRESSURE_AT_TORQUE_MAX_PA, weights};
 pub(super) use controllers::STEER_WINDUP_DEG_S;
 pub(super) use loads::is_off_scale;
 pub use rolling::share_resistance;
-pub(super) use traction::Turned;
 
 /// Samples of a log that make one sample of a residual: residuals come ten times a second.
 pub(super) const SAMPLES_PER_RESIDUAL: usize = 10;

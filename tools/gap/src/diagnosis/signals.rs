@@ -19,8 +19,9 @@ pub(in crate::diagnosis) use command_period::{PERIOD_S, command_periods_s};
 use made::Made;
 pub(in crate::diagnosis) use receiver::unwound;
 pub use smoothed::StrokeJump;
+pub(in crate::diagnosis) use smoothed::slope_over;
 pub(in crate::diagnosis) use smoothed::{SMOOTHED, moving_mean, smooth};
-use smoothed::{Swing, slope, slope_over};
+use smoothed::{Swing, slope};
 use uncut::uncut;
 
 /// Time series by channel, as logs and replays have them.

@@ -91,11 +91,14 @@ impl Axles {
     /// What of the axles' slips no motion of the machine can take away, m/s; positive where the front
     /// joint is to be turned left.
     pub(super) fn misfit_m_s(&self, angle: [f64; 2], rate: [f64; 2], ahead: f64) -> f64 {
-        let [none, a, b] = self.slips(angle, rate, ahead);
-        let normal =
-            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        -normal.iter().zip(none).map(|(n, slip)| n * slip).sum::<f64>() / length
+        let [none, by_side, by_turn] = self.slips(angle, rate, ahead);
+        -pattern(by_side, by_turn).iter().zip(none).map(|(n, slip)| n * slip).sum::<f64>()
+    }
+
+    /// Side forces of the axles that are balanced in themselves, of a straight machine, their squares one together.
+    pub(super) fn pattern(&self) -> [f64; 3] {
+        let [_, by_side, by_turn] = self.slips([0.0; 2], [0.0; 2], 0.0);
+        pattern(by_side, by_turn)
     }
 
     /// Slips of the axles with the front frame held, and what its slip and its turn each add.
@@ -105,6 +108,13 @@ impl Axles {
         let less = |slips: [f64; 3]| [0, 1, 2].map(|k| slips[k] - none[k]);
         [none, less(at([1.0, 0.0])), less(at([0.0, 1.0]))]
     }
+}
+
+/// What is square to both, of length one.
+fn pattern(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    let normal = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+    normal.map(|n| n / length)
 }
 
 #[cfg(test)]

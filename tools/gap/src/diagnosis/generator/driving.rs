@@ -11,8 +11,9 @@ use xt28_sim::{Drive, DriveInput, Effects, Parts};
 
 use super::circuits::{PRESSURE_AT_TORQUE_MAX_PA, circuit_means, circuits_pa};
 use super::grade::{Grade, climbs};
+use super::lifted::{is_lifted, travels_m_s};
 use super::press::{normals_n, own_n};
-use super::rolling::{CARRYING_N, SAMPLES_PER_LOOK, rolling_errors, wheel_kinematics};
+use super::rolling::{SAMPLES_PER_LOOK, wheel_kinematics};
 use super::scrub::scrub_drag_nm;
 use super::traction::{TURNS_RAD_S, mean_torque_nm};
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
@@ -35,7 +36,7 @@ const FORCE_S: f64 = 2.0;
 
 /// How many times wider the difference of the circuits' pressures is to be taken while a wheel is in the air: that one
 /// gains speed faster than a log of it tells (assumed).
-const LIFTED: f64 = 2.0;
+const LIFTED_DOUBT: f64 = 2.0;
 
 /// Drives the block with the throttle commanded and the wheel speeds measured.
 #[must_use]
@@ -91,7 +92,7 @@ fn pressure_errors(
                 out.power_share,
             );
             if is_lifted(signals, i) {
-                difference_pa /= LIFTED;
+                difference_pa /= LIFTED_DOUBT;
             }
             let share = (since_s / DRAWN_S).min(1.0);
             state.mean_torque_nm -= share * nm_per_pa * common_pa;
@@ -136,11 +137,7 @@ fn force_error_nm(
     let carried_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0;
     // What the machine travels by. Wheels tell that where all of them hold on to the ground.
     let slips = effects.wheels.iter().any(|(_, e)| e.slippery_ground != SlipperyGround::default());
-    let travels_m_s = if slips {
-        &rolling_errors(signals, machine, effects).ahead_m_s
-    } else {
-        signals.travels_m_s(|| rolling_errors(signals, machine, &Effects::default()).ahead_m_s)
-    };
+    let travels_m_s = travels_m_s(signals, machine, effects, slips);
     let parts_from = |i: usize| slips || is_lifted(signals, i);
     let weight_nm = mass_kg * GRAVITY_M_S2 * w.radius_m / 6.0;
     let added = added_resistance(signals, machine, effects);
@@ -181,12 +178,6 @@ fn force_error_nm(
         })
         .collect();
     moving_mean(&errors, FORCE_S)
-}
-
-/// Whether arms hold a wheel too high at sample `i` for it to turn as the machine travels, which others tell then.
-fn is_lifted(signals: &Signals, i: usize) -> bool {
-    let carries = |w: &Wheel| signals.cylinder_load_n[*w][i] > CARRYING_N;
-    (1..6).contains(&Wheel::ALL.iter().filter(|w| carries(w)).count())
 }
 
 /// What is added to the coefficient of rolling resistance, mean of the wheels, each counted by what it presses with;
@@ -317,12 +308,12 @@ mod tests {
         assert!(left_nm(Axle::Rear) > 300.0, "{}", left_nm(Axle::Rear));
     }
 
-    /// Torque not accounted for, Nm, of a machine that rolls at 1 rad/s while MR, in the air, turns at `spins_rad_s` and
-    /// gains `gains_rad_s2`.
+    /// Torque not accounted for, Nm, of a machine that rolls at 1 rad/s while MR, in the air, turns at `spins_rad_s`
+    /// and gains `gains_rad_s2`.
     fn left_beside_one_in_the_air_nm(spins_rad_s: f64, gains_rad_s2: f64) -> f64 {
         let (machine, mut s) = (Machine::xt28(), still(10));
         for w in Wheel::ALL {
-            s.cylinder_load_n[w].fill(if w == Wheel::Mr { 0.0 } else { 70.0e3 });
+            s.cylinder_load_n[w].fill(if w == Wheel::Mr { -20.0e3 } else { 70.0e3 });
             for i in 0..s.len {
                 let since_s = f64::from(u32::try_from(i).unwrap()) * DT_S - 5.0;
                 let speed = if w == Wheel::Mr { spins_rad_s + gains_rad_s2 * since_s } else { 1.0 };

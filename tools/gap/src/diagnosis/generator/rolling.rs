@@ -120,7 +120,9 @@ fn held_errors(
             product += (1.0 - holds) * COASTS * coasts_m_s;
             square += (1.0 - holds) * COASTS;
         }
+        // Where no wheel carries the machine, none says that it stands.
         if square == 0.0 {
+            errors.ahead_m_s[i..end].fill(ahead);
             continue;
         }
         ahead = product / square;

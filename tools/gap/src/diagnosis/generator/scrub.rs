@@ -7,7 +7,7 @@
 
 use std::borrow::Cow;
 
-use xt28_machine::{GRAVITY_M_S2, Machine, Wheel};
+use xt28_machine::{GRAVITY_M_S2, Machine};
 use xt28_sim::Effects;
 
 use super::axles::Axles;
@@ -22,7 +22,9 @@ const SLIDES_M: f64 = 0.009;
 /// Rolling in which a deflection is let go, m (from the same logs).
 const RELAXATION_M: f64 = 1.2;
 
-/// Torque that the front (0) or rear (1) joint needs against the tyres, Nm; left > 0.
+/// Torque that the front (0) or rear (1) joint needs against the tyres, Nm; left > 0. By how much tyres grip, that
+/// differs from make to make; joints hear of slippery ground by how it creeps alone (docs/diagnosis-log.md, items 9
+/// and 127).
 #[must_use]
 pub(super) fn scrub_nm(
     signals: &Signals,
@@ -30,7 +32,7 @@ pub(super) fn scrub_nm(
     effects: &Effects,
     joint: usize,
 ) -> Samples {
-    let most_nm = most_nm(machine, effects)[joint];
+    let most_nm = most_nm(machine)[joint];
     let scrubs = scrubs(signals, machine, effects);
     scrubs.iter().map(|[deflection, _]| most_nm * deflection).collect()
 }
@@ -41,11 +43,7 @@ pub(super) fn scrub_nm(
 /// straightens, puts into the ground beyond that drives the machine on, and its pumps need to do less.
 #[must_use]
 pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
-    let axles = Axles::new(machine);
-    let lever_m = [[1.0, 0.0], [0.0, 1.0]].map(|rate| axles.misfit_m_s([0.0; 2], rate, 0.0));
-    let most_nm = most_nm(machine, effects);
-    let most_n = 0.5 * (most_nm[0] / lever_m[0] + most_nm[1] / lever_m[1]);
-    let wheel_nm = most_n * machine.wheels.radius_m / 6.0;
+    let wheel_nm = grip(effects) * most_n(machine) * machine.wheels.radius_m / 6.0;
     scrubs(signals, machine, effects)
         .iter()
         .map(|[deflection, ahead]| wheel_nm * deflection * ahead)
@@ -53,16 +51,22 @@ pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effe
 }
 
 /// Torque against each joint while the tyres slide, Nm.
-fn most_nm(machine: &Machine, effects: &Effects) -> [f64; 2] {
-    let side_n = grips_n(machine, effects);
-    SLIDES_AT.map(|share| share * side_n * Axles::new(machine).lever_m())
+fn most_nm(machine: &Machine) -> [f64; 2] {
+    let axle_n = machine.wheels.friction * machine.mass_kg() * GRAVITY_M_S2 / 3.0;
+    SLIDES_AT.map(|share| share * axle_n * Axles::new(machine).lever_m())
 }
 
-/// What the ground grips an axle by, N.
-fn grips_n(machine: &Machine, effects: &Effects) -> f64 {
-    let of = |w: &Wheel| effects.wheels[*w].slippery_ground.friction_factor / 6.0;
-    let friction = machine.wheels.friction * Wheel::ALL.iter().map(of).sum::<f64>();
-    friction * machine.mass_kg() * GRAVITY_M_S2 / 3.0
+/// Force along the pattern while they do, N.
+fn most_n(machine: &Machine) -> f64 {
+    let axles = Axles::new(machine);
+    let lever_m = [[1.0, 0.0], [0.0, 1.0]].map(|rate| axles.misfit_m_s([0.0; 2], rate, 0.0));
+    let most_nm = most_nm(machine);
+    0.5 * (most_nm[0] / lever_m[0] + most_nm[1] / lever_m[1])
+}
+
+/// Mean friction of the wheels over nominal friction.
+fn grip(effects: &Effects) -> f64 {
+    effects.wheels.iter().map(|(_, e)| e.slippery_ground.friction_factor).sum::<f64>() / 6.0
 }
 
 /// Deflection along the pattern as a share of the one at which the tyres slide, -1 to 1, and slip along
@@ -93,17 +97,21 @@ fn deflections(signals: &Signals, machine: &Machine, lets_go_per_s: f64) -> Vec<
 }
 
 /// How fast tyres that creep let go of what they are deflected by: as stiff as they slide late, they give way in
-/// proportion to their force.
+/// proportion to their force, the axles each by its part of the pattern. A wheel that does not creep holds its axle.
 fn lets_go_per_s(machine: &Machine, effects: &Effects) -> f64 {
-    let creep_m_s_n =
-        effects.wheels.iter().map(|(_, e)| e.slippery_ground.creep_m_s_n).sum::<f64>() / 6.0;
-    let share = 0.5 * (SLIDES_AT[0] + SLIDES_AT[1]);
-    // Both wheels of an axle bear its force.
-    share * grips_n(machine, effects) / SLIDES_M * 0.5 * creep_m_s_n
+    let mut holds_n_s_m = [0.0; 3];
+    for (w, e) in effects.wheels.iter() {
+        holds_n_s_m[w.axle() as usize] += 1.0 / e.slippery_ground.creep_m_s_n;
+    }
+    let pattern = Axles::new(machine).pattern();
+    let gives_m_s_n = (0..3).map(|k| pattern[k] * pattern[k] / holds_n_s_m[k]).sum::<f64>();
+    most_n(machine) / SLIDES_M * gives_m_s_n
 }
 
 #[cfg(test)]
 mod tests {
+    use xt28_machine::Wheel;
+
     use super::super::still::still;
     use super::*;
 
@@ -123,9 +131,9 @@ mod tests {
         };
         let [firm, creeping] = [0.0, 1.0e-4].map(after);
         assert!(firm > 10.0e3 && creeping < 0.1 * firm, "{firm}, where they creep {creeping}");
-        // Both wheels of an axle slip by their share of its force.
-        let slip_m_s = Axles::new(&machine).misfit_m_s([0.0; 2], [0.05, 0.0], 0.0).abs();
-        let wanted = slip_m_s * 2.0 / 1.0e-4 * Axles::new(&machine).lever_m();
+        // What slips along the pattern takes as much of the joint as the joint slips it by, twice two wheels' worth.
+        let lever_m = Axles::new(&machine).misfit_m_s([0.0; 2], [1.0, 0.0], 0.0).abs();
+        let wanted = 0.05 * lever_m * 2.0 / 1.0e-4 * lever_m;
         assert!((creeping / wanted - 1.0).abs() < 0.1, "{creeping}, not {wanted}");
     }
 }

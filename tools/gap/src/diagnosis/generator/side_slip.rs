@@ -1,23 +1,27 @@
-//! Wheels that creep slip sideways as well: by how far bends and pushes shift and turn the machine on them.
+//! Wheels that creep slip sideways as well: by how far bends, slopes and pushes shift and turn the machine on them.
 //!
-//! Tyres without creep go where joints and axles say. On ones that creep, the machine's own weight carries it to the
-//! outside of a bend, and motors of one side that push more than the other's turn it; three axles give way to both
-//! until they hold it in balance. That takes it half a second where they creep by 0.2 mm/s/N.
+//! Tyres without creep go where joints and axles say. On ones that creep, the machine's own inertia carries it to the
+//! outside of a bend, its weight down a cross slope, and motors of one side that push more than the other's turn it;
+//! three axles give way to all that until they hold it in balance. That takes it half a second where they creep by
+//! 0.2 mm/s/N. The frames are taken as straight behind one another.
 
-use xt28_machine::{Machine, PerWheel, Side, Wheel};
+use core::f64::consts::FRAC_PI_2;
+
+use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Side, Wheel};
 use xt28_sim::{Effects, Part, Parts};
 
 use super::axles::Axles;
+use super::grade::Grade;
 use super::press::{normals_n, own_n};
-use super::rolling::{SAMPLES_PER_LOOK, wheel_kinematics};
+use super::rolling::{CARRYING_N, SAMPLES_PER_LOOK, wheel_kinematics};
 use super::traction::Traction;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
-/// Creep of a wheel on ground that has none of its own, m/s/N (assumed).
-const FIRM_M_S_N: f64 = 1.0e-6;
-/// A wheel that is pressed by less does not quite hold sideways, N, and one in the air by this share (assumed).
-const HOLDS_FROM_N: f64 = 1.0e3;
-const HOLDS_LEAST: f64 = 0.02;
+/// Creep on firm ground of a wheel that bears a sixth of the machine, m/s/N (assumed); of one that bears less it is
+/// the more. It decides whose axle leads where nothing else creeps, and is no slip of its own.
+const FIRM_M_S_N: f64 = 2.0e-6;
+/// Share of a sixth of the machine that a wheel in the air is taken to bear: it holds next to nothing.
+const BEARS_LEAST: f64 = 4.0e-4;
 /// From one look to the next, s.
 const STEP_S: f64 = SAMPLES_PER_LOOK as f64 * DT_S;
 
@@ -35,14 +39,16 @@ pub(super) struct SideSlip {
 /// What of the ground and the machine one look needs.
 #[derive(Clone, Copy)]
 struct Look {
-    /// How hard it is to slip each axle sideways, N s/m.
-    holds_n_s_m: [f64; 3],
+    /// How hard it is to slip each axle sideways, N s/m, as it creeps and on firm ground.
+    holds_n_s_m: [[f64; 3]; 2],
     /// What the wheels' pushes turn the machine with, to the left, Nm.
     pushes_nm: f64,
     /// Speed ahead, m/s.
     ahead_m_s: f64,
     /// Rate of turn that the joints say, rad/s, and how fast it changes, rad/s^2.
     turns: [f64; 2],
+    /// Sine of the angle by which the left side is up.
+    left_up: f64,
 }
 
 impl SideSlip {
@@ -51,12 +57,15 @@ impl SideSlip {
         let creep_m_s_n = |w: Wheel| effects.wheels[w].slippery_ground.creep_m_s_n;
         Wheel::ALL.into_iter().any(|w| creep_m_s_n(w) > 0.0).then(|| {
             let (body, axle_x_m) = (whole(machine, effects), machine.wheels.axle_x_m);
-            let (mut slips, mut all) = ([0.0; 2], Self::default());
+            let (mut slips, mut all) = ([[0.0; 2]; 2], Self::default());
             for look in looks(s, machine, effects) {
-                slips = next(slips, &look, &body, axle_x_m);
-                all.front_m_s.push(slips[0]);
-                all.turn_rad_s.push(slips[1]);
-                all.holds_n_s_m.push(look.holds_n_s_m);
+                let of = |k: usize| next(slips[k], &look, look.holds_n_s_m[k], &body, axle_x_m);
+                slips = [of(0), of(1)];
+                // As little creep as one likes slips as little.
+                let [creeping, firm] = slips;
+                all.front_m_s.push(creeping[0] - firm[0]);
+                all.turn_rad_s.push(creeping[1] - firm[1]);
+                all.holds_n_s_m.push(look.holds_n_s_m[0]);
             }
             all
         })
@@ -72,7 +81,8 @@ impl SideSlip {
         near(&self.turn_rad_s, at_s).unwrap_or_default()
     }
 
-    /// How hard each axle is to slip sideways at `at_s`, N s/m.
+    /// How hard each axle is to slip sideways at `at_s`, N s/m: without creep as its load is, and all alike on ground
+    /// that creeps much.
     pub(super) fn holds_n_s_m(&self, at_s: f64) -> [f64; 3] {
         near(&self.holds_n_s_m, at_s).unwrap_or([1.0; 3])
     }
@@ -94,24 +104,52 @@ fn looks<'a>(
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
     let kinematics = s.kinematics(|| wheel_kinematics(s, machine));
     let half_track_m = machine.wheels.track_m / 2.0;
+    let ground = Grade::believed(s, effects);
     let mut before = None;
     (0..s.len).step_by(SAMPLES_PER_LOOK).zip(kinematics).map(move |(i, moves)| {
         let normal_n = normals_n(&own_n, |w| s.cylinder_load_n[w][i], &moves.pose);
         let traction = Traction::new(s, machine, effects, &normal_n, i, (None, 0.0));
-        let (mut holds_n_s_m, mut pushes_nm) = ([0.0; 3], 0.0);
-        for (w, push_n) in traction.carried_n().iter() {
-            let creep_m_s_n = FIRM_M_S_N + effects.wheels[w].slippery_ground.creep_m_s_n;
-            let presses = (normal_n[w] / HOLDS_FROM_N).clamp(HOLDS_LEAST, 1.0);
-            holds_n_s_m[w.axle() as usize] += presses / creep_m_s_n;
-            pushes_nm += if w.side() == Side::Left { -push_n } else { *push_n } * half_track_m;
-        }
+        let pushes = traction.carried_n();
+        let of_side = |(w, push_n): (Wheel, &f64)| {
+            if w.side() == Side::Left { -push_n } else { *push_n }
+        };
+        let holds_n_s_m = [1.0, 0.0].map(|share| holds_n_s_m(effects, &normal_n, share));
         let [angle, rate] =
             [&s.joint_rad, &s.joint_rate_rad_s].map(|of| [0, 1].map(|joint: usize| of[joint][i]));
-        let ahead_m_s = s.mean_wheel_speed_rad_s(i) * parts.radius_m;
-        let turn = axles.rolling_under(holds_n_s_m, angle, rate, ahead_m_s).turn_rad_s[0];
+        let ahead_m_s = rolls_rad_s(s, i) * parts.radius_m;
+        let turn = axles.rolling_under(holds_n_s_m[0], angle, rate, ahead_m_s).turn_rad_s[0];
         let gains = (turn - before.replace(turn).unwrap_or(turn)) / STEP_S;
-        Look { holds_n_s_m, pushes_nm, ahead_m_s, turns: [turn, gains] }
+        let heading_rad = s.heading_near(i as f64 * DT_S).unwrap_or_default();
+        Look {
+            holds_n_s_m,
+            pushes_nm: pushes.iter().map(of_side).sum::<f64>() * half_track_m,
+            ahead_m_s,
+            turns: [turn, gains],
+            left_up: ground.map_or(0.0, |ground| ground.climb(heading_rad + FRAC_PI_2)),
+        }
     })
+}
+
+/// How hard it is to slip each axle sideways, N s/m, of wheels that creep by that `share` of what they are believed to.
+fn holds_n_s_m(effects: &Effects, normal_n: &PerWheel<f64>, share: f64) -> [f64; 3] {
+    let mean_n = (normal_n.sum() / 6.0).max(1.0);
+    let mut holds_n_s_m = [0.0; 3];
+    for (w, normal_n) in normal_n.iter() {
+        let firm_m_s_n = FIRM_M_S_N / (normal_n / mean_n).max(BEARS_LEAST);
+        let creep_m_s_n = share * effects.wheels[w].slippery_ground.creep_m_s_n;
+        holds_n_s_m[w.axle() as usize] += 1.0 / (firm_m_s_n + creep_m_s_n);
+    }
+    holds_n_s_m
+}
+
+/// Mean speed of the wheels that carry, which alone roll as the machine goes, rad/s; of all where none does.
+fn rolls_rad_s(s: &Signals, i: usize) -> f64 {
+    let carries = |w: &Wheel| s.cylinder_load_n[*w][i] > CARRYING_N;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for w in Wheel::ALL.into_iter().filter(carries) {
+        (sum, count) = (sum + s.wheel_speed_rad_s[w][i], count + 1.0);
+    }
+    if count > 0.0 { sum / count } else { s.mean_wheel_speed_rad_s(i) }
 }
 
 /// The machine as one body, straight.
@@ -130,16 +168,22 @@ fn whole(machine: &Machine, effects: &Effects) -> Part {
     })
 }
 
-/// Slips of the front axle, m/s, and about it, rad/s, a look after they were `before`: momentum and spin of `body`
-/// that the axles at `axle_x_m` and the pushes change, by the Euler method that looks ahead.
-fn next([side, turn]: [f64; 2], look: &Look, body: &Part, axle_x_m: [f64; 3]) -> [f64; 2] {
+/// Slips of the front axle, m/s, and about it, rad/s, a look after they were `before`, on axles at `axle_x_m` that
+/// hold by `holds_n_s_m`: what changes the momentum and the spin of `body`, by the Euler method that looks ahead.
+fn next(
+    [side, turn]: [f64; 2],
+    look: &Look,
+    holds_n_s_m: [f64; 3],
+    body: &Part,
+    axle_x_m: [f64; 3],
+) -> [f64; 2] {
     let (kg, ahead_m) = (body.mass_kg, body.com_m[0]);
     let about_front = body.inertia_kg_m2[2] + kg * ahead_m * ahead_m;
-    let moment =
-        |power: i32| (0..3).map(|k| look.holds_n_s_m[k] * axle_x_m[k].powi(power)).sum::<f64>();
+    let moment = |power: i32| (0..3).map(|k| holds_n_s_m[k] * axle_x_m[k].powi(power)).sum::<f64>();
     let [turns, gains] = look.turns;
-    let bends_n = kg * (ahead_m * gains + look.ahead_m_s * turns);
-    let bends_nm = about_front * gains + kg * ahead_m * look.ahead_m_s * turns;
+    let aside_n = kg * (look.ahead_m_s * turns + GRAVITY_M_S2 * look.left_up);
+    let bends_n = kg * ahead_m * gains + aside_n;
+    let bends_nm = about_front * gains + ahead_m * aside_n;
     // Rows: the sum of all forces, and their moment about the front axle.
     let row = |mass: [f64; 2], holds: [f64; 2], outside: f64, spin: f64| {
         let [a, b] = [0, 1].map(|k: usize| mass[k] / STEP_S + holds[k]);
@@ -196,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn weight_carries_the_front_axle_to_the_outside_of_a_bend() {
+    fn inertia_carries_the_front_axle_to_the_outside_of_a_bend() {
         let machine = Machine::xt28();
         let (s, slippery) = (bend(&machine, 1.0), creeping(&Wheel::ALL));
         let slip = SideSlip::new(&s, &machine, &slippery).unwrap();
@@ -237,13 +281,48 @@ mod tests {
             slip.map_or(0.0, |slip| slip.front_m_s(SETTLED_S).abs())
         };
         let all = slips_m_s(&s, &Wheel::ALL);
-        assert_eq!(slips_m_s(&s, &[]), 0.0);
+        assert!(SideSlip::new(&s, &machine, &creeping(&[])).is_none());
         assert!(slips_m_s(&s, &[Wheel::Br, Wheel::Bl]) < 0.1 * all);
         for w in [Wheel::Br, Wheel::Bl] {
             s.cylinder_load_n[w].fill(-1.0e6);
         }
         // The middle axle has the weight behind it alone now, so that the front one bears less of it.
         assert!(slips_m_s(&s, &Wheel::ALL) < 0.9 * all);
+    }
+
+    #[test]
+    fn a_cross_slope_has_it_slip_down() {
+        let (machine, mut slippery) = (Machine::xt28(), creeping(&Wheel::ALL));
+        // Heading east, the left side is up where the ground rises to the north.
+        slippery.slope.grade_y_rad = 0.05;
+        let s = bend(&machine, 0.0);
+        let slip = SideSlip::new(&s, &machine, &slippery).unwrap();
+        let body = whole(&machine, &slippery);
+        let (mean, square) = spread(machine.wheels.axle_x_m);
+        let share = 1.0 / 3.0 + (body.com_m[0] - mean) * (0.0 - mean) / square;
+        let wanted = -0.5 * CREEP_M_S_N * share * body.mass_kg * GRAVITY_M_S2 * 0.05_f64.sin();
+        let front_m_s = slip.front_m_s(SETTLED_S);
+        assert!((front_m_s / wanted - 1.0).abs() < 0.02, "{front_m_s}, not {wanted}");
+    }
+
+    /// Tolerances are told by their slopes: a jump at no creep would look like a steep one.
+    #[test]
+    fn as_little_creep_as_one_likes_changes_as_little() {
+        let (machine, mut effects) = (Machine::xt28(), Effects::default());
+        let mut s = bend(&machine, 1.0);
+        s.cylinder_load_n[Wheel::Ml].fill(20.0e3);
+        effects.wheels[Wheel::Ml].slippery_ground.creep_m_s_n = 1.0e-12;
+        let slip = SideSlip::new(&s, &machine, &effects).unwrap();
+        assert!(slip.front_m_s(SETTLED_S).abs() < 1e-8 && slip.turn_rad_s(SETTLED_S).abs() < 1e-8);
+        // Weighted as by their loads.
+        let parts = Parts::new(&machine, &effects);
+        let own_n = PerWheel::from_fn(|w| own_n(&machine, &parts, w));
+        let pose = &s.kinematics(|| wheel_kinematics(&s, &machine))[10].pose;
+        let presses_n = normals_n(&own_n, |w| s.cylinder_load_n[w][50], pose);
+        let axle_n = |a: [Wheel; 2]| a.iter().map(|w| presses_n[*w]).sum::<f64>();
+        let wanted = axle_n([Wheel::Mr, Wheel::Ml]) / axle_n([Wheel::Fr, Wheel::Fl]);
+        let holds = slip.holds_n_s_m(SETTLED_S);
+        assert!((holds[1] / holds[0] - wanted).abs() < 1e-3, "{holds:?}");
     }
 
     #[test]

@@ -8,7 +8,8 @@ use xt28_machine::{Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, slip_trim_nm};
 
 use super::circuits::{is_of_first, motor_nm, weights};
-use crate::diagnosis::signals::{DT_S, SMOOTHED, Samples, Signals, smooth};
+use crate::diagnosis::signals::{SMOOTHED, Samples, Signals, slope_over, smooth};
+use crate::diagnosis::wheel_torques::WheelTorques;
 
 /// Push over friction up to which a wheel surely holds, and from which on it surely slides: pressures come
 /// twenty times a second, and friction differs from place to place (assumed).
@@ -24,21 +25,9 @@ const SPUN: usize = 5;
 /// Samples from one look to the next where a push that smooth wheel speeds tell before it is there is sought.
 const APART: usize = 10;
 
-/// What a run's wheels are turned by, as each is and as smooth as the wheel speeds.
-#[derive(Debug)]
-pub(in crate::diagnosis) struct Turned {
-    /// Torques of the motors, Nm: by their circuit's pressures and the trim of each wheel; none where no pressures
-    /// are known.
-    torque_nm: PerWheel<Samples>,
-    /// The same, smooth.
-    smooth_nm: PerWheel<Samples>,
-    /// Which way each turns, smooth: 1 forward, -1 back, none at rest. What resists its rolling is smooth so too.
-    smooth_turns: PerWheel<Samples>,
-}
-
-/// What the wheels of a run are turned by.
-fn turned<'a>(s: &'a Signals, machine: &Machine) -> &'a Turned {
-    s.turned(|| {
+/// What the motors of a run turn its wheels with.
+fn wheel_torques<'a>(s: &'a Signals, machine: &Machine) -> &'a WheelTorques {
+    s.wheel_torques(|| {
         let first = PerWheel::from_fn(|w| is_of_first(machine, w));
         let torque_nm = PerWheel::from_fn(|w| {
             let nm = |i| {
@@ -51,22 +40,19 @@ fn turned<'a>(s: &'a Signals, machine: &Machine) -> &'a Turned {
             };
             (0..s.len).map(nm).collect::<Samples>()
         });
-        let turns = |w| s.wheel_speed_rad_s[w].iter().map(|speed| (speed / TURNS_RAD_S).tanh());
-        Turned {
-            smooth_nm: PerWheel::from_fn(|w| smooth(&torque_nm[w])),
-            smooth_turns: PerWheel::from_fn(|w| smooth(&turns(w).collect())),
+        let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+        let pushes_nm = |w| {
+            let gains_rad_s2 = slope_over(&s.smooth_wheel_speed_rad_s[w], SPUN);
+            let smooth_nm = smooth(&torque_nm[w]).into_iter().zip(gains_rad_s2);
+            smooth_nm.map(|(nm, gains)| nm - inertia_kg_m2 * gains).collect()
+        };
+        let ways = |w| s.wheel_speed_rad_s[w].iter().map(|speed| (speed / TURNS_RAD_S).tanh());
+        WheelTorques {
+            pushes_nm: PerWheel::from_fn(pushes_nm),
+            ways: PerWheel::from_fn(|w| smooth(&ways(w).collect())),
             torque_nm,
         }
     })
-}
-
-/// Torque that spins a wheel up at sample `i` and pushes nothing, Nm.
-fn spins_up_nm(s: &Signals, machine: &Machine, w: Wheel, i: usize) -> f64 {
-    let speed_rad_s = &s.smooth_wheel_speed_rad_s[w];
-    let (from, to) = (i.saturating_sub(SPUN), (i + SPUN).min(speed_rad_s.len() - 1));
-    let gained_rad_s = speed_rad_s[to] - speed_rad_s[from];
-    let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
-    inertia_kg_m2 * gained_rad_s / ((to - from).max(1) as f64 * DT_S)
 }
 
 /// The largest of `torque_nm` that shows in a smooth speed at sample `i`.
@@ -92,10 +78,10 @@ pub(super) struct Traction {
     caught: PerWheel<f64>,
 }
 
-/// Torque that the motors have at sample `i`, mean of all wheels, Nm: what a wheel in the air is held back by its circuit's
-/// others have the more.
+/// Torque that the motors have at sample `i`, mean of all wheels, Nm: what a wheel in the air is held back by, its
+/// circuit's others have the more.
 pub(super) fn mean_torque_nm(s: &Signals, machine: &Machine, i: usize) -> f64 {
-    turned(s, machine).torque_nm.iter().map(|(_, nm)| nm[i]).sum::<f64>() / 6.0
+    wheel_torques(s, machine).torque_nm.iter().map(|(_, nm)| nm[i]).sum::<f64>() / 6.0
 }
 
 impl Traction {
@@ -108,16 +94,15 @@ impl Traction {
         i: usize,
         (before, since_s): (Option<&Self>, f64),
     ) -> Self {
-        let Turned { torque_nm, smooth_nm, smooth_turns } = turned(s, machine);
+        let WheelTorques { torque_nm, pushes_nm, ways } = wheel_torques(s, machine);
         let wheels = &machine.wheels;
         let of = |w| &effects.wheels[w].slippery_ground;
         let resists_n = PerWheel::from_fn(|w| {
             let added = effects.wheels[w].rolling_resistance.added;
-            (wheels.rolling_resistance + added) * normal_n[w] * smooth_turns[w][i]
+            (wheels.rolling_resistance + added) * normal_n[w] * ways[w][i]
         });
         let by_n = |nm: f64, w| nm / wheels.radius_m - resists_n[w];
-        let force_n =
-            PerWheel::from_fn(|w| by_n(smooth_nm[w][i] - spins_up_nm(s, machine, w, i), w));
+        let force_n = PerWheel::from_fn(|w| by_n(pushes_nm[w][i], w));
         let peak_n = PerWheel::from_fn(|w| by_n(peak_nm(&torque_nm[w], i), w));
         let most_n = PerWheel::from_fn(|w| wheels.friction * of(w).friction_factor * normal_n[w]);
         let pushed = PerWheel::from_fn(|w| {
@@ -163,6 +148,7 @@ mod tests {
     use super::super::circuits::PRESSURE_AT_TORQUE_MAX_PA;
     use super::super::still::still;
     use super::*;
+    use crate::diagnosis::signals::DT_S;
 
     const PRESSES_N: f64 = 27.0e3;
 
@@ -254,7 +240,8 @@ mod tests {
         }
         for i in [485, 500, 515, 600] {
             let push_n = at(&s, &on_ice(0.4), i, None).carried_n()[Wheel::Ml];
-            assert!(push_n.abs() < 0.01 * resists_nm, "{push_n} N at sample {i}");
+            let resists_n = resists_nm / machine.wheels.radius_m;
+            assert!(push_n.abs() < 0.01 * resists_n, "{push_n} N at sample {i}");
         }
     }
 }

@@ -112,7 +112,7 @@ impl Rolled {
     /// Until `at_s`, m.
     fn until_m(&self, at_s: f64) -> f64 {
         let last = self.0.len() - 1;
-        let place = (at_s / DT_S).clamp(0.0, last as f64 - 1e-6);
+        let place = (at_s / DT_S).clamp(0.0, last as f64);
         let (i, share) = (place as usize, place.fract());
         self.0[i] + share * (self.0[(i + 1).min(last)] - self.0[i])
     }
@@ -144,7 +144,7 @@ mod tests {
     use super::super::still::still;
     use super::*;
 
-    /// A machine that goes round to the left at 1 m/s and 0.1 rad/s, its front axle slipping to the outside.
+    /// A machine that goes round to the left at 1 m/s and 0.1 rad/s, its front axle slipping to the right.
     fn bend(machine: &Machine, slips_m_s: f64) -> Signals {
         let mut s = still(20);
         (s.fixes, s.headings) = (Vec::new(), Vec::new());

@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use xt28_machine::PerWheel;
 
 use super::{Samples, Signals};
-use crate::diagnosis::generator::Turned;
 use crate::diagnosis::instant::Instant;
 use crate::diagnosis::kinematics::Kinematics;
+use crate::diagnosis::wheel_torques::WheelTorques;
 
 /// Made of a run's samples when first asked for.
 #[derive(Debug, Default)]
@@ -17,7 +17,7 @@ pub(super) struct Made {
     kinematics: OnceLock<Vec<Kinematics>>,
     scrubs: OnceLock<Vec<[f64; 2]>>,
     yaw_rates: OnceLock<Vec<Option<f64>>>,
-    turned: OnceLock<Turned>,
+    wheel_torques: OnceLock<WheelTorques>,
     travels_m_s: OnceLock<Samples>,
     off_scale: OnceLock<PerWheel<Vec<bool>>>,
 }
@@ -72,13 +72,16 @@ impl Signals {
         self.made.yaw_rates.get_or_init(first)
     }
 
-    /// What turns the wheels and resists them. That needs of a machine only its circuits and what torque their
-    /// pressure makes.
-    pub(in crate::diagnosis) fn turned(&self, first: impl FnOnce() -> Turned) -> &Turned {
-        self.made.turned.get_or_init(first)
+    /// What the motors turn the wheels with.
+    pub(in crate::diagnosis) fn wheel_torques(
+        &self,
+        first: impl FnOnce() -> WheelTorques,
+    ) -> &WheelTorques {
+        self.made.wheel_torques.get_or_init(first)
     }
 
-    /// Speed of the front axle that sound wheels say, m/s. They need of a machine only its axles, joints and wheels.
+    /// Speed of the front axle that sound wheels say which hold on to the ground, m/s. That needs of a machine only its
+    /// axles, joints and wheels.
     pub(in crate::diagnosis) fn travels_m_s(&self, first: impl FnOnce() -> Samples) -> &Samples {
         self.made.travels_m_s.get_or_init(first)
     }

@@ -60,7 +60,7 @@ pub(super) fn slope(samples: &Samples) -> Samples {
 
 /// Central difference over twice `half` samples, one-sided at the ends.
 #[allow(clippy::cast_precision_loss)]
-pub(super) fn slope_over(samples: &Samples, half: usize) -> Samples {
+pub(in crate::diagnosis) fn slope_over(samples: &Samples, half: usize) -> Samples {
     let end = samples.len().saturating_sub(1);
     (0..samples.len())
         .map(|i| {

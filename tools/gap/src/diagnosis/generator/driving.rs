@@ -15,7 +15,7 @@ use super::lifted::{is_lifted, travels_m_s};
 use super::press::{normals_n, own_n};
 use super::rolling::{SAMPLES_PER_LOOK, wheel_kinematics};
 use super::scrub::scrub_drag_nm;
-use super::traction::{TURNS_RAD_S, mean_torque_nm};
+use super::traction::{TURNS_RAD_S, mean_torque_nm, wheel_kg_m2};
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
 
 /// What the block did less what was measured.
@@ -133,7 +133,7 @@ fn force_error_nm(
     };
     let w = &machine.wheels;
     let mass_kg = machine.mass_kg() + effects.masses.payload.mass_kg;
-    let wheel_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+    let wheel_kg_m2 = wheel_kg_m2(machine);
     let carried_kg_m2 = mass_kg * w.radius_m * w.radius_m / 6.0;
     // What the machine travels by. Wheels tell that where all of them hold on to the ground.
     let slips = effects.wheels.iter().any(|(_, e)| e.slippery_ground != SlipperyGround::default());

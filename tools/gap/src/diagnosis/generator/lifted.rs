@@ -33,8 +33,22 @@ pub(super) fn travels_m_s<'a>(
     signals.travels_m_s(first).into()
 }
 
+/// Mean speed of the wheels that carry at sample `i`, which alone roll as the machine goes, rad/s; of all where none
+/// does.
+pub(super) fn rolls_rad_s(signals: &Signals, i: usize) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for w in carrying(signals, i) {
+        (sum, count) = (sum + signals.wheel_speed_rad_s[w][i], count + 1.0);
+    }
+    if count > 0.0 { sum / count } else { signals.mean_wheel_speed_rad_s(i) }
+}
+
 /// Whether arms hold a wheel too high at sample `i` for it to turn as the machine travels, which others tell then.
 pub(super) fn is_lifted(signals: &Signals, i: usize) -> bool {
-    let carries = |w: &Wheel| signals.cylinder_load_n[*w][i] > CARRYING_N;
-    (1..6).contains(&Wheel::ALL.iter().filter(|w| carries(w)).count())
+    (1..6).contains(&carrying(signals, i).count())
+}
+
+/// The wheels that carry at sample `i`.
+fn carrying(signals: &Signals, i: usize) -> impl Iterator<Item = Wheel> {
+    Wheel::ALL.into_iter().filter(move |w| signals.cylinder_load_n[*w][i] > CARRYING_N)
 }

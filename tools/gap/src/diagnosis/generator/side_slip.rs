@@ -12,8 +12,9 @@ use xt28_sim::{Effects, Part, Parts};
 
 use super::axles::Axles;
 use super::grade::Grade;
+use super::lifted::rolls_rad_s;
 use super::press::{normals_n, own_n};
-use super::rolling::{CARRYING_N, SAMPLES_PER_LOOK, wheel_kinematics};
+use super::rolling::{SAMPLES_PER_LOOK, wheel_kinematics};
 use super::traction::Traction;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
@@ -140,16 +141,6 @@ fn holds_n_s_m(effects: &Effects, normal_n: &PerWheel<f64>, share: f64) -> [f64;
         holds_n_s_m[w.axle() as usize] += 1.0 / (firm_m_s_n + creep_m_s_n);
     }
     holds_n_s_m
-}
-
-/// Mean speed of the wheels that carry, which alone roll as the machine goes, rad/s; of all where none does.
-fn rolls_rad_s(s: &Signals, i: usize) -> f64 {
-    let carries = |w: &Wheel| s.cylinder_load_n[*w][i] > CARRYING_N;
-    let (mut sum, mut count) = (0.0, 0.0);
-    for w in Wheel::ALL.into_iter().filter(carries) {
-        (sum, count) = (sum + s.wheel_speed_rad_s[w][i], count + 1.0);
-    }
-    if count > 0.0 { sum / count } else { s.mean_wheel_speed_rad_s(i) }
 }
 
 /// The machine as one body, straight.

@@ -25,6 +25,11 @@ const SPUN: usize = 5;
 /// Samples from one look to the next where a push that smooth wheel speeds tell before it is there is sought.
 const APART: usize = 10;
 
+/// Inertia of a wheel about its axle, kg m^2.
+pub(super) fn wheel_kg_m2(machine: &Machine) -> f64 {
+    machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2)
+}
+
 /// What the motors of a run turn its wheels with.
 fn wheel_torques<'a>(s: &'a Signals, machine: &Machine) -> &'a WheelTorques {
     s.wheel_torques(|| {
@@ -40,7 +45,7 @@ fn wheel_torques<'a>(s: &'a Signals, machine: &Machine) -> &'a WheelTorques {
             };
             (0..s.len).map(nm).collect::<Samples>()
         });
-        let inertia_kg_m2 = machine.masses.wheel_kg * machine.vehicle.wheel_gyration_m.powi(2);
+        let inertia_kg_m2 = wheel_kg_m2(machine);
         let pushes_nm = |w| {
             let gains_rad_s2 = slope_over(&s.smooth_wheel_speed_rad_s[w], SPUN);
             let smooth_nm = smooth(&torque_nm[w]).into_iter().zip(gains_rad_s2);

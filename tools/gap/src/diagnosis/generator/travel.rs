@@ -1,5 +1,7 @@
 //! Wheel speeds against one another and against the receiver: who slips, who misreads, who is late.
 
+use core::iter::once;
+
 use xt28_machine::{Machine, PerWheel};
 
 use super::antenna::Antenna;
@@ -106,7 +108,7 @@ impl Rolled {
             gone_m += speed_m_s * DT_S;
             gone_m
         };
-        Self([0.0].into_iter().chain(speeds_m_s.map(step)).collect())
+        Self(once(0.0).chain(speeds_m_s.map(step)).collect())
     }
 
     /// Until `at_s`, m.

@@ -3,10 +3,14 @@
 use xt28_ecus::Profile;
 use xt28_sim::effects::Entry;
 
-/// Effects of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
+/// Numbers of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
 /// firmware of 2016 has loops of its own, and valves that follow the cab. (Loss and jitter of frames it
 /// hears of, if only on `CAN_1`, where a service tool tunes it.)
-const OF_THE_PAPERS_ECUS: [&str; 3] = ["arm-gain", "steer-gain", "rear-follower-lag"];
+const OF_THE_PAPERS_ECUS: [(&str, &[&str]); 3] = [
+    ("arm-gain", &["kp_factor", "ki_factor"]),
+    ("steer-gain", &["kp_factor", "ki_factor"]),
+    ("rear-follower-lag", &["time_constant_s", "ratio_factor"]),
+];
 
 /// An effect that the profile of 2016 would pass over in silence.
 #[derive(Debug, thiserror::Error)]
@@ -27,8 +31,34 @@ impl UnheardEffect {
         if profile == Profile::Paper {
             return Ok(());
         }
-        let mut names = effects.iter().map(|entry| entry.effect.name);
-        let unheard = names.find(|name| OF_THE_PAPERS_ECUS.contains(name));
-        unheard.map_or(Ok(()), |effect| Err(Self { effect }))
+        let unheard = effects.iter().find(|entry| is_of_the_papers_ecus(entry));
+        unheard.map_or(Ok(()), |entry| Err(Self { effect: entry.effect.name }))
+    }
+}
+
+/// Whether it sets a number of those ECUs.
+fn is_of_the_papers_ecus(entry: &Entry) -> bool {
+    let sets = |name: &str| entry.values.iter().any(|(parameter, _)| parameter.name == name);
+    let own = OF_THE_PAPERS_ECUS.iter().filter(|(effect, _)| *effect == entry.effect.name);
+    own.flat_map(|(_, numbers)| *numbers).any(|name| sets(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use xt28_sim::effects::Overlay;
+
+    use super::*;
+
+    #[test]
+    fn a_slow_rear_valve_is_any_machines_and_a_slow_follower_the_papers() {
+        let check = |numbers: &str| {
+            let text = format!("[[effect]]\nname = \"rear-follower-lag\"\n{numbers}");
+            let overlay = Overlay::parse(&text, Path::new("e.toml")).unwrap();
+            UnheardEffect::check(Profile::Firmware2016, &overlay.entries).is_ok()
+        };
+        assert!(check("valve_time_constant_s = 0.3"));
+        assert!(!check("time_constant_s = 0.3\nvalve_time_constant_s = 0.3"));
     }
 }

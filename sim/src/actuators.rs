@@ -21,7 +21,7 @@ pub(crate) struct Actuators {
     reference_rad: f64,
     arms: PerWheel<Arm>,
     flow: FlowSharing,
-    steering: Steering,
+    steering: [Steering; 2],
     drive: Drive,
     rolling_resistance_m: PerWheel<f64>,
     arm_states: PerWheel<ArmState>,
@@ -53,7 +53,7 @@ impl Actuators {
             let load_n = weight_n / linkage.at_stroke(stroke_m).force_ratio;
             arms[wheel].settled(stroke_m, load_n, dt_s)
         };
-        let steering = Steering::new(machine, &effects.steering);
+        let steering = Steering::both(machine, &effects.steering);
         let drive = Drive::new(machine, effects);
         Self {
             linkage,
@@ -61,7 +61,7 @@ impl Actuators {
             arm_states: PerWheel::from_fn(settled),
             arms,
             flow: FlowSharing::new(machine, effects.pump_flow),
-            joints: [steering.straight(dt_s), steering.straight(dt_s)],
+            joints: steering.each_ref().map(|joint| joint.straight(dt_s)),
             steering,
             shaft: drive.at_rest(dt_s),
             drive,
@@ -89,7 +89,7 @@ impl Actuators {
             self.arm_states[wheel] = self.arms[wheel].resumed(&input, dt_s);
         }
         for (i, joint) in self.joints.iter_mut().enumerate() {
-            *joint = self.steering.resumed(actuation.steer_opening[i], motion.joint[i], dt_s);
+            *joint = self.steering[i].resumed(actuation.steer_opening[i], motion.joint[i], dt_s);
         }
         let input = drive_input(actuation, motion);
         self.shaft = self.drive.resumed(&input, &measured.wheel_torque_nm, dt_s);
@@ -117,7 +117,7 @@ impl Actuators {
         if held.joints {
             for (i, joint) in self.joints.iter_mut().enumerate() {
                 let (angle_rad, rate_rad_s) = (measured.joint_rad[i], measured.joint_rate_rad_s[i]);
-                self.steering.refill(joint, HingeMotion { angle_rad, rate_rad_s });
+                self.steering[i].refill(joint, HingeMotion { angle_rad, rate_rad_s });
             }
         }
         if held.drive {
@@ -147,7 +147,7 @@ impl Actuators {
         let actuation = &actuation.saturated();
         let arms = self.open_arms(actuation, motion, dt_s);
         let joints_rad_s = core::array::from_fn(|i| {
-            self.steering.open(&mut self.joints[i], actuation.steer_opening[i], dt_s)
+            self.steering[i].open(&mut self.joints[i], actuation.steer_opening[i], dt_s)
         });
         let flow_share = self.flow_share(&arms, joints_rad_s);
         let arm = self.fill_arms(&arms, flow_share, motion, dt_s);
@@ -249,8 +249,8 @@ impl Actuators {
     ) -> [HingeSpring; 2] {
         core::array::from_fn(|i| {
             let rate_rad_s = flow_share * asked_rad_s[i];
-            self.steering.turn(&mut self.joints[i], motion.joint[i], rate_rad_s, dt_s);
-            self.steering.spring(&self.joints[i], motion.joint[i])
+            self.steering[i].turn(&mut self.joints[i], motion.joint[i], rate_rad_s, dt_s);
+            self.steering[i].spring(&self.joints[i], motion.joint[i])
         })
     }
 

@@ -35,7 +35,7 @@ fn driven(t_s: f64) -> Actuation {
 
 /// Joints and drive of one machine without a vehicle.
 struct Alone {
-    steering: Steering,
+    steering: [Steering; 2],
     joints: [SteeringState; 2],
     drive: Drive,
     shaft: DriveState,
@@ -44,7 +44,7 @@ struct Alone {
 
 impl Alone {
     fn new(machine: &Machine, effects: &Effects, dt_s: f64) -> Self {
-        let steering = Steering::new(machine, &effects.steering);
+        let steering = Steering::both(machine, &effects.steering);
         let drive = Drive::new(machine, effects);
         let w = &machine.wheels;
         let resistance_m = |wheel: Wheel| {
@@ -52,7 +52,7 @@ impl Alone {
             (w.rolling_resistance + added).max(0.0) * w.radius_m
         };
         Self {
-            joints: [(); 2].map(|()| steering.straight(dt_s)),
+            joints: steering.each_ref().map(|joint| joint.straight(dt_s)),
             shaft: drive.at_rest(dt_s),
             steering,
             drive,
@@ -73,8 +73,8 @@ impl Alone {
         for (i, joint) in self.joints.iter_mut().enumerate() {
             let (angle_rad, rate_rad_s) = (before.joint_rad[i], before.joint_rate_rad_s[i]);
             let opening = actuation.steer_opening[i];
-            self.steering.step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
-            let spring = self.steering.spring(joint, HingeMotion { angle_rad, rate_rad_s });
+            self.steering[i].step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
+            let spring = self.steering[i].spring(joint, HingeMotion { angle_rad, rate_rad_s });
             assert_eq!(spring, loads.joint[i]);
         }
         let input = DriveInput {
@@ -162,13 +162,13 @@ fn joints_beyond_their_stops_alone_reproduce_the_whole() {
         &actuation,
         Duration::ZERO,
     );
-    let steering = Steering::new(&machine, &effects.steering);
+    let steering = Steering::both(&machine, &effects.steering);
     let motion = |s: &VehicleState, i: usize| HingeMotion {
         angle_rad: s.joint_rad[i],
         rate_rad_s: s.joint_rate_rad_s[i],
     };
     let mut joints =
-        [0, 1].map(|i| steering.resumed(actuation.steer_opening[i], motion(&bent, i), dt_s));
+        [0, 1].map(|i| steering[i].resumed(actuation.steer_opening[i], motion(&bent, i), dt_s));
     let mut touched = [0; 2];
     for _ in 0..400 {
         let before = *vehicle.state();
@@ -176,10 +176,10 @@ fn joints_beyond_their_stops_alone_reproduce_the_whole() {
         for (i, joint) in joints.iter_mut().enumerate() {
             let HingeMotion { angle_rad, rate_rad_s } = motion(&before, i);
             let opening = actuation.steer_opening[i];
-            steering.step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
-            let spring = steering.spring(joint, motion(&before, i));
+            steering[i].step(joint, &SteeringInput { opening, angle_rad, rate_rad_s }, dt_s);
+            let spring = steering[i].spring(joint, motion(&before, i));
             assert_eq!(spring, vehicle.bodies().loads.joint[i]);
-            touched[i] += usize::from(spring.stiffness_nm > steering.stiffness_nm());
+            touched[i] += usize::from(spring.stiffness_nm > steering[i].stiffness_nm());
         }
     }
     assert!(touched.iter().all(|steps| *steps > 10), "{touched:?} steps against the metal");

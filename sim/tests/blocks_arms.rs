@@ -45,7 +45,7 @@ fn driven(t: f64) -> Actuation {
 struct Hydraulics {
     arms: PerWheel<Arm>,
     states: PerWheel<ArmState>,
-    steering: Steering,
+    steering: [Steering; 2],
     joints: [SteeringState; 2],
     flow: FlowSharing,
     least_share: f64,
@@ -57,11 +57,11 @@ impl Hydraulics {
         let load_n = machine.mass_kg() * GRAVITY_M_S2
             / 6.0
             / machine.linkage().at_stroke(STROKE_M).force_ratio;
-        let steering = Steering::new(machine, &effects.steering);
+        let steering = Steering::both(machine, &effects.steering);
         Self {
             states: PerWheel::from_fn(|w| arms[w].settled(STROKE_M, load_n, dt_s)),
             arms,
-            joints: [steering.straight(dt_s), steering.straight(dt_s)],
+            joints: steering.each_ref().map(|joint| joint.straight(dt_s)),
             steering,
             flow: FlowSharing::new(machine, effects.pump_flow),
             least_share: 1.0,
@@ -83,8 +83,9 @@ impl Hydraulics {
         let speeds =
             PerWheel::from_fn(|w| self.arms[w].open(&mut self.states[w], &inputs[w], dt_s));
         let mut demand_m3_s = speeds.map(|v| self.flow.cylinder_m3_s(v)).sum();
-        for (joint, opening) in self.joints.iter_mut().zip(actuation.steer_opening) {
-            demand_m3_s += self.flow.joint_m3_s(self.steering.open(joint, opening, dt_s));
+        for (i, joint) in self.joints.iter_mut().enumerate() {
+            let opening = actuation.steer_opening[i];
+            demand_m3_s += self.flow.joint_m3_s(self.steering[i].open(joint, opening, dt_s));
         }
         let share = self.flow.share(demand_m3_s);
         self.least_share = self.least_share.min(share);

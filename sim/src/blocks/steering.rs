@@ -23,6 +23,8 @@ pub struct Steering {
     torque_max_nm: f64,
     stiffness_nm: f64,
     damping_nms: f64,
+    /// Of the valve's spool, s.
+    lag_s: f64,
     effects: SteeringEffects,
 }
 
@@ -48,9 +50,15 @@ pub struct SteeringInput {
 }
 
 impl Steering {
-    /// A joint of this machine; front and rear are alike.
+    /// The front and the rear joint of this machine: alike, but for a rear valve that may be slower.
     #[must_use]
-    pub const fn new(machine: &Machine, effects: &SteeringEffects) -> Self {
+    pub const fn both(machine: &Machine, effects: &SteeringEffects) -> [Self; 2] {
+        let lag_s = effects.lag.time_constant_s;
+        let rear_lag_s = lag_s + effects.rear_follower.valve_time_constant_s;
+        [Self::with_lag(machine, effects, lag_s), Self::with_lag(machine, effects, rear_lag_s)]
+    }
+
+    const fn with_lag(machine: &Machine, effects: &SteeringEffects, lag_s: f64) -> Self {
         let (a, v) = (&machine.articulation, &machine.vehicle);
         Self {
             rate_max_rad_s: a.rate_max_deg_s.to_radians(),
@@ -58,6 +66,7 @@ impl Steering {
             torque_max_nm: a.torque_max_nm,
             stiffness_nm: v.joint_stiffness_nm,
             damping_nms: v.joint_damping_nms,
+            lag_s,
             effects: *effects,
         }
     }
@@ -96,7 +105,7 @@ impl Steering {
         let e = &self.effects;
         let asked = opening.clamp(-1.0, 1.0);
         let arrived = state.commands.step(asked, e.delay.delay_s, dt_s);
-        let spool = state.spool.step(arrived, e.lag.time_constant_s, dt_s);
+        let spool = state.spool.step(arrived, self.lag_s, dt_s);
         spool * self.rate_max_rad_s * e.rate.factor
     }
 
@@ -152,7 +161,8 @@ mod tests {
     const DT_S: f64 = 0.005;
 
     fn steering(effects: SteeringEffects) -> Steering {
-        Steering::new(&Machine::xt28(), &effects)
+        let [front, _] = Steering::both(&Machine::xt28(), &effects);
+        front
     }
 
     /// Rest angle after each step of a joint that follows its rest.

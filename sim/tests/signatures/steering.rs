@@ -70,6 +70,17 @@ pub(crate) fn rows() -> Vec<Row> {
             ]
             .concat()
         }),
+        // The rear joint as with a slow valve, the front one as ever.
+        row("rear-follower-lag", &[("valve_time_constant_s", 0.15)], |seen| {
+            let dt_s = STEP.as_secs_f64();
+            let [_, rear_rad] = rates_rad_s().map(|rate| rate * dt_s / (dt_s / 0.15).exp_m1());
+            [
+                behind(seen, [6.2, 7.0], [0.0, rear_rad]),
+                behind(seen, [7.9, 8.0], [0.0; 2]),
+                behind(seen, [9.2, 10.0], [0.0, -rear_rad]),
+            ]
+            .concat()
+        }),
         row("steer-rate", &[("factor", 0.7)], |seen| {
             let missing_rad = rates_rad_s().map(|rate| 0.3 * rate * 2.0);
             // On the way both are behind their oil by what the joint's damper takes.

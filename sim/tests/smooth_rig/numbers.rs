@@ -6,8 +6,15 @@ use xt28_sim::{Effects, Terrain};
 
 use super::{Trace, grounds, lifted_and_landed, trace};
 
-/// What no plant has: gains of the ECUs. What a bus loses and delays is none of the plant's either.
-const OF_ECUS: [&str; 3] = ["arm-gain", "steer-gain", "rear-follower-lag"];
+/// What no plant has: laws of the ECUs. What a bus loses and delays is none of the plant's either.
+const OF_ECUS: [(&str, &str); 6] = [
+    ("arm-gain", "kp_factor"),
+    ("arm-gain", "ki_factor"),
+    ("steer-gain", "kp_factor"),
+    ("steer-gain", "ki_factor"),
+    ("rear-follower-lag", "time_constant_s"),
+    ("rear-follower-lag", "ratio_factor"),
+];
 /// A rigid wheel creeps by 1e-8 m/s/N of its own, a thousandth of the tolerance of what the ground adds, and
 /// answers in proportion to what is little beside that.
 const FINE: (&str, f64) = ("creep_m_s_n", 1e-3);
@@ -26,12 +33,13 @@ impl Knob {
     /// Every parameter of an effect that the plant or a sensor has, and numbers of the machine file that
     /// no effect replaces.
     pub(crate) fn all() -> Vec<Self> {
-        let of_plant =
-            |effect: &&Effect| effect.block != Block::Bus && !OF_ECUS.contains(&effect.name);
         let parameters = |effect: &'static Effect| {
-            effect.parameters.iter().map(move |p| Self::Effect(effect, p))
+            let of_plant = |p: &&Parameter| !OF_ECUS.contains(&(effect.name, p.name));
+            let own = effect.parameters.iter().filter(of_plant);
+            own.map(move |p| Self::Effect(effect, p)).collect::<Vec<_>>()
         };
-        let mut all: Vec<Self> = CATALOGUE.iter().filter(of_plant).flat_map(parameters).collect();
+        let of_no_bus = CATALOGUE.iter().filter(|effect| effect.block != Block::Bus);
+        let mut all: Vec<Self> = of_no_bus.flat_map(parameters).collect();
         all.extend([
             Self::Machine("front frame's mass", |m| &mut m.masses.front_frame_kg),
             Self::Machine("lock's stiffness", |m| &mut m.hydraulics.lock_stiffness_n_m),

@@ -59,7 +59,7 @@ pub(super) fn joint_errors(
     joint: usize,
 ) -> JointErrors {
     let effects = schedule.effects;
-    let steering = Steering::new(machine, &effects.steering);
+    let steering = &Steering::both(machine, &effects.steering)[joint];
     let mut state = steering.straight(DT_S);
     let angle = &signals.joint_rad[joint];
     let stiffness_nm = steering.stiffness_nm();
@@ -142,7 +142,7 @@ mod tests {
     fn not_followed(share: f64) -> f64 {
         let (machine, effects) = (Machine::xt28(), Effects::default());
         let mut signals = still(10);
-        let steering = Steering::new(&machine, &effects.steering);
+        let [steering, _] = Steering::both(&machine, &effects.steering);
         let mut state = steering.straight(DT_S);
         let mut angle_rad = 0.0;
         for i in 0..signals.len {

@@ -53,12 +53,12 @@ fn joints_m3_s(
     effects: &Effects,
     flow: &FlowSharing,
 ) -> Samples {
-    let steering = Steering::new(machine, &effects.steering);
-    let mut joints = [steering.straight(DT_S), steering.straight(DT_S)];
+    let steering = Steering::both(machine, &effects.steering);
+    let mut joints = steering.each_ref().map(|joint| joint.straight(DT_S));
     let asked = |i: usize| {
         let joint = |j: usize| {
             let opening = signals.steer_opening[j][i];
-            flow.joint_m3_s(steering.open(&mut joints[j], opening, DT_S))
+            flow.joint_m3_s(steering[j].open(&mut joints[j], opening, DT_S))
         };
         [0, 1].map(joint).iter().sum()
     };

@@ -41,6 +41,8 @@ pub(crate) struct FrameWriter {
     valve: AliveCounter,
     /// Counters last sent to the arm and the drive ECU.
     sent: Option<(u8, u8)>,
+    /// What was asked of the brake last; nothing after silence.
+    is_braking: bool,
     engine_speed_rpm: f64,
 }
 
@@ -54,9 +56,14 @@ impl FrameWriter {
         self.sent
     }
 
+    /// Whether the last frames close the brake.
+    pub(crate) const fn is_braking(&self) -> bool {
+        self.is_braking
+    }
+
     /// Nothing was sent: what is acknowledged from now on is old.
     pub(crate) const fn silence(&mut self) {
-        self.sent = None;
+        (self.sent, self.is_braking) = (None, false);
     }
 
     /// The frames that carry `command` to both ECUs: all of them, or none where one has no form on the
@@ -107,7 +114,7 @@ impl FrameWriter {
         };
         let target = target.encode()?;
         [Some(arm), valves, Some(target)].into_iter().flatten().for_each(|frame| out.push(frame));
-        self.sent = Some((arm_counter, drive_counter));
+        (self.sent, self.is_braking) = (Some((arm_counter, drive_counter)), command.brake);
         Ok(())
     }
 }

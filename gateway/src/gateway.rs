@@ -3,15 +3,16 @@
 use xt28_dbc::messages::{ArmStatus, ArmTarget, ArmValve, DriveStatus, DriveTarget};
 use xt28_dbc::{EncodeError, Frame, Outbox};
 use xt28_machine::{Machine, SimTime};
-use xt28_safety::{Command, Input, Order, Phase, Stamps, State, Verdict, step};
+use xt28_safety::{Command, Input, Measured, Order, Phase, Stamps, State, Verdict, step};
 use xt28_ubx::{Enu, LocalFrame};
 
 use crate::epoch::{Epoch, EpochCollector, Fix, Quality};
 use crate::frames::{self, Drive, FrameWriter};
-use crate::peer::Peer;
+use crate::peer::{ArmFault, Peer};
 use crate::policy::Answer;
 use crate::sensors::Sensors;
 use crate::status::{Status, Tally};
+use crate::trust::trusted;
 use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pace, Policy, Pose};
 
 /// After a stop, neutral frames go on for this long, so that the machine is brought to rest and not
@@ -143,7 +144,7 @@ impl Gateway {
                 self.tally.clamped += 1;
                 self.writer.actuate(&command, Drive::Enabled, out)
             }
-            Verdict::Block(_) => self.stay_neutral(out),
+            Verdict::Block(_) => self.stay_neutral(now, out),
         };
         self.note(sent);
         // After the commands: a node's frames leave in the order in which they were queued, and behind
@@ -228,7 +229,10 @@ impl Gateway {
             Pace::Fix => located.map(|located| located.at),
             Pace::Tick => self.sensors.oldest_at(),
         };
-        let Some(sensed_at) = sensed_at.filter(|_| self.sensors.complete(now)) else { return };
+        // Loads are in an observation alone, so that the kernel does not miss them.
+        let has_loads = !self.arm_ecu.finds_broken(ArmFault::PressureSensor as u32);
+        let whole = self.sensors.complete(now) && has_loads;
+        let Some(sensed_at) = sensed_at.filter(|_| whole) else { return };
         let seen = self.observe(now, sensed_at);
         self.stamps.observation_ns = Some(sensed_at.as_nanos());
         if let Some(command) = self.policy.act(&seen) {
@@ -263,6 +267,11 @@ impl Gateway {
         }
     }
 
+    fn measured(&self) -> Measured {
+        let said = self.sensors.measured(self.wheel_radius_m);
+        trusted(said, &self.arm_ecu, &self.drive_ecu)
+    }
+
     fn input(&self, now: SimTime) -> Input {
         let order = if self.auto_arm && matches!(self.order, Order::None) {
             Order::Arm
@@ -273,7 +282,7 @@ impl Gateway {
         Input {
             order,
             request: self.request,
-            measured: self.sensors.measured(self.wheel_radius_m),
+            measured: self.measured(),
             arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
             drive: self.drive_ecu.link(sent.map(|(_, drive)| drive)),
             stamps: Stamps {
@@ -313,24 +322,27 @@ impl Gateway {
         }
     }
 
-    /// Frames that move nothing: through the handshake, and for a while after a stop.
-    fn stay_neutral(&mut self, out: &mut Outbox) -> Result<(), EncodeError> {
-        let shaking_hands = matches!(self.kernel.phase(), Phase::Handshake { .. });
+    /// Frames that move nothing: through the handshake, and for a while after a stop. They close the brake on a
+    /// machine that stands, and open none.
+    fn stay_neutral(&mut self, now: SimTime, out: &mut Outbox) -> Result<(), EncodeError> {
         if self.neutral_left == 0 || !self.bus_ok {
             self.writer.silence();
             return Ok(());
         }
-        if !shaking_hands {
+        let since_ns = if let Phase::Handshake { since_ns, .. } = self.kernel.phase() {
+            now.as_nanos().saturating_sub(since_ns)
+        } else {
             self.neutral_left -= 1;
-        }
-        let since_stop_ns = u64::from(NEUTRAL_TICKS - self.neutral_left) * TICK_NS;
-        let measured = self.sensors.measured(self.wheel_radius_m);
+            u64::from(NEUTRAL_TICKS - self.neutral_left) * TICK_NS
+        };
+        let measured = self.measured();
         let limits = &self.config.limits;
         let standing = measured.speed_m_s.abs() <= limits.brake_speed_m_s;
         // Without a joint reading the middle is as good as any: neutral frames steer nothing.
         let joint_rad = measured.front_angle_rad;
         let rest = Command::rest(if joint_rad.is_finite() { joint_rad } else { 0.0 });
-        let brake = standing || since_stop_ns > limits.brake_wait_ns;
+        let is_closed = self.writer.is_braking() || self.drive_ecu.is_braked();
+        let brake = is_closed || standing || since_ns > limits.brake_wait_ns;
         self.writer.actuate(&Command { brake, ..rest }, Drive::Neutral, out)
     }
 

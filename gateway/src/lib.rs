@@ -27,6 +27,7 @@ mod remote;
 mod running;
 mod sensors;
 mod status;
+mod trust;
 
 pub use action::{Action, ActionMap};
 pub use config::GatewayConfig;

@@ -15,6 +15,21 @@ const ARM_FAULTS: &[&str] = &["position sensor", "pressure sensor", "attitude se
 const DRIVE_FAULTS: &[&str] =
     &["joint sensor", "wheel speed sensor", "pump pressure sensor", "supply", "engine"];
 
+/// Bits of the arm ECU's sensors, whose readings the gateway goes by.
+#[derive(Clone, Copy)]
+pub(crate) enum ArmFault {
+    PositionSensor,
+    PressureSensor,
+    AttitudeSensor,
+}
+
+/// Bits of those of the drive ECU.
+#[derive(Clone, Copy)]
+pub(crate) enum DriveFault {
+    JointSensor,
+    WheelSpeedSensor,
+}
+
 /// What an ECU says of itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PeerState {
@@ -61,6 +76,8 @@ pub(crate) struct Peer {
     heard_at: Option<SimTime>,
     report: EcuReport,
     accepted: u8,
+    /// Of the drive ECU: the parking brake is on.
+    is_braked: bool,
     refused: u64,
 }
 
@@ -82,6 +99,17 @@ impl Peer {
         self.heard_at = Some(now);
         self.report = status.report;
         self.accepted = status.accepted;
+        self.is_braked = status.is_braked;
+    }
+
+    /// Whether it said last that the parking brake is on.
+    pub(crate) const fn is_braked(&self) -> bool {
+        self.is_braked
+    }
+
+    /// Whether it said last that what this fault bit is of is broken.
+    pub(crate) const fn finds_broken(&self, bit: u32) -> bool {
+        self.report.faults >> bit & 1 == 1
     }
 
     /// What it said last.
@@ -109,6 +137,7 @@ impl Peer {
 pub(crate) struct PeerStatus {
     report: EcuReport,
     accepted: u8,
+    is_braked: bool,
     counter: u8,
 }
 
@@ -125,7 +154,7 @@ impl From<ArmStatus> for PeerStatus {
         let refusal = (reason != none).then(|| reason.name());
         let (faults, fault_names) = (status.faults, ARM_FAULTS);
         let report = EcuReport { state, refusal, faults, fault_names };
-        Self { report, accepted: status.accepted, counter: status.counter }
+        Self { report, accepted: status.accepted, is_braked: false, counter: status.counter }
     }
 }
 
@@ -142,7 +171,8 @@ impl From<DriveStatus> for PeerStatus {
         let refusal = (reason != none).then(|| reason.name());
         let (faults, fault_names) = (status.faults, DRIVE_FAULTS);
         let report = EcuReport { state, refusal, faults, fault_names };
-        Self { report, accepted: status.accepted, counter: status.counter }
+        let (accepted, is_braked) = (status.accepted, status.brake);
+        Self { report, accepted, is_braked, counter: status.counter }
     }
 }
 

@@ -114,6 +114,13 @@ fn every_failure_stops_the_machine_then_falls_silent() {
         (Faults { imu_roll_deg: Some(18.5), ..fine }, 0.02),
         // 0.2 s until loads count as lost, three fixes without an observation, and 25 ms on the way.
         (Faults { loads_silent: true, ..fine }, 0.7),
+        // An ECU finds a sensor broken and sends its last reading on: position, attitude, joint, wheel speed.
+        (Faults { bits: [1 << 0, 0], ..fine }, 0.02),
+        (Faults { bits: [1 << 2, 0], ..fine }, 0.02),
+        (Faults { bits: [0, 1 << 0], ..fine }, 0.02),
+        (Faults { bits: [0, 1 << 1], ..fine }, 0.02),
+        // Pressure: nothing but the observation has it.
+        (Faults { bits: [1 << 1, 0], ..fine }, 0.52),
     ];
     for (failure, within_s) in failures {
         let mut bench = armed(goto(25.0, 0.0, 0.0));
@@ -140,6 +147,41 @@ fn every_failure_stops_the_machine_then_falls_silent() {
             bench.tick();
             assert!(bench.drive_target().is_none());
         }
+    }
+}
+
+/// A wheel that reads too fast, or a machine that is pushed, is none that may be let go.
+#[test]
+fn frames_that_move_nothing_open_no_brake() {
+    let braked = Faults { is_braked: true, ..Faults::default() };
+    let mut bench = Bench::new(gateway(goto(25.0, 0.0, 0.0), true), LATE);
+    bench.faults = braked;
+    bench.vehicle.speed_m_s = 0.3;
+    let neutral = (0..12).filter_map(|_| {
+        bench.tick();
+        bench.vehicle.speed_m_s = 0.3;
+        bench.drive_target().filter(|target| !target.enable)
+    });
+    let braking: Vec<bool> = neutral.map(|target| target.brake).collect();
+    assert!(braking.len() > 8 && braking.iter().all(|brake| *brake), "{braking:?}");
+
+    // Nor does arming, for a policy that wants it closed; nor a stop, before the ECU says that it is.
+    let wants = script("end_s = 60\n[[command]]\nat_s = 0.0\nbrake = true\n");
+    let mut bench = Bench::new(gateway(wants, true), LATE);
+    let closed = |bench: &mut Bench, ticks: usize| {
+        (0..ticks).all(|_| {
+            bench.tick();
+            bench.drive_target().is_none_or(|target| target.brake)
+        })
+    };
+    assert!(closed(&mut bench, 100));
+    assert_eq!(bench.gateway.status().phase, Phase::Armed);
+    bench.gateway.order(Order::EmergencyStop);
+    bench.vehicle.speed_m_s = 0.3;
+    assert!(closed(&mut bench, 1) && bench.drive_target().is_some());
+    for _ in 0..90 {
+        bench.vehicle.speed_m_s = 0.3;
+        assert!(closed(&mut bench, 1));
     }
 }
 

@@ -42,6 +42,9 @@ pub(crate) fn before_arming(
     if !input.measured.is_finite() {
         return Some(Reason::MeasurementNotFinite);
     }
+    if !input.measured.is_plausible() {
+        return Some(Reason::MeasurementImplausible);
+    }
     if libm::fabs(input.measured.roll_rad) > limits.roll_max_rad {
         return Some(Reason::Roll);
     }

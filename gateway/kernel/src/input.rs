@@ -39,6 +39,12 @@ pub enum Order {
     Release,
 }
 
+/// Strokes that a sensor in order can read, m (assumed: the cylinder has 0.5 m, and its sensor some beyond either end;
+/// one below its zero reads as 65.5 m, facts 3.2).
+const STROKE_M: core::ops::RangeInclusive<f64> = -0.05..=0.60;
+/// The largest joint angle that one can read, either way, rad (assumed: 45 degrees, where frames meet at 25).
+const ANGLE_MAX_RAD: f64 = core::f64::consts::FRAC_PI_4;
+
 /// Sensor values that limits are relative to. NaN where not known, which blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -63,6 +69,13 @@ impl Measured {
         roll_rad: f64::NAN,
         pitch_rad: f64::NAN,
     };
+
+    /// True when strokes and joint are where they can be.
+    #[must_use]
+    pub fn is_plausible(&self) -> bool {
+        self.stroke_m.iter().all(|s| STROKE_M.contains(s))
+            && libm::fabs(self.front_angle_rad) <= ANGLE_MAX_RAD
+    }
 
     /// True when no number is NaN or infinite.
     #[must_use]

@@ -122,11 +122,13 @@ struct Channel {
 }
 
 impl Channel {
-    /// The rate comes after the closeness and the absolute range last: where a measured value leaps, as
-    /// with a broken wire, the target follows it no faster than ever, and stays in its range.
+    /// What is measured holds a target back and never drives it: a reading that leaps, as with a broken wire,
+    /// would have it go where nobody asked, and the arm or joint after it once the reading heals.
     fn hold(&self, wanted: f64, from: f64, measured: f64) -> f64 {
         let close = bound(wanted, measured - self.error, measured + self.error);
-        let near = bound(close, from - self.step, from + self.step);
+        let onward =
+            if from < wanted { bound(close, from, wanted) } else { bound(close, wanted, from) };
+        let near = bound(onward, from - self.step, from + self.step);
         bound(near, self.low, self.high)
     }
 }

@@ -37,8 +37,8 @@ pub struct Limits {
     pub stroke_max_m: f64,
     /// A target stroke moves no faster than this, m/s.
     pub stroke_rate_m_s: f64,
-    /// A target stroke stays this close to the measured one, m; where that one leaps, it comes back to it
-    /// at the rate above.
+    /// A target stroke goes no further than this ahead of the measured one, m. Where that one leaps away, the
+    /// target waits for it.
     pub stroke_error_m: f64,
     /// Valve openings stay within plus and minus this, share of full.
     pub opening_max: f64,
@@ -50,7 +50,7 @@ pub struct Limits {
     pub angle_max_rad: f64,
     /// The front joint's target moves no faster than this, rad/s.
     pub angle_rate_rad_s: f64,
-    /// The front joint's target stays this close to the measured angle, rad; as with strokes.
+    /// The front joint's target goes no further than this ahead of the measured angle, rad; as with strokes.
     pub angle_error_rad: f64,
     /// The parking brake does not close on a machine that is faster than this, either way, m/s.
     pub brake_speed_m_s: f64,

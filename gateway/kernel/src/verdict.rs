@@ -81,8 +81,10 @@ pub enum Reason {
     Stale(Stream),
     /// A number in the request is NaN or infinite.
     RequestNotFinite,
-    /// A measured number is NaN or infinite.
+    /// A measured number is NaN or infinite, as it is where an ECU calls its sensor broken.
     MeasurementNotFinite,
+    /// A stroke or a joint is measured where it cannot be.
+    MeasurementImplausible,
     /// Too much roll.
     Roll,
     /// Too much pitch.
@@ -114,7 +116,8 @@ impl fmt::Display for Reason {
             Self::Stale(Stream::Observation) => "observation too old",
             Self::Stale(Stream::Policy) => "policy silent",
             Self::RequestNotFinite => "policy asked for a number that is not finite",
-            Self::MeasurementNotFinite => "a measured value is not finite",
+            Self::MeasurementNotFinite => "a measured value is not known, or its sensor broken",
+            Self::MeasurementImplausible => "a stroke or joint is measured where it cannot be",
             Self::Roll => "roll above its limit",
             Self::Pitch => "pitch above its limit",
             Self::ArmEcuNotReady => "arm ECU in safe stop or fault",

@@ -26,6 +26,11 @@ fn finite() -> impl Strategy<Value = f64> {
     prop_oneof![2 => -1.5..1.5_f64, 1 => bits().prop_map(|x| if x.is_finite() { x } else { 0.3 })]
 }
 
+/// Where a sensor in order can have an arm.
+fn stroke_m() -> impl Strategy<Value = f64> + Clone {
+    -0.05..=0.6_f64
+}
+
 fn command(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Command> {
     let arms = prop_oneof![
         Just(Arms::Off),
@@ -150,7 +155,7 @@ proptest! {
     #[test]
     fn an_armed_kernel_lets_nothing_outside_the_limits_through(
         requests in proptest::collection::vec((command(finite().boxed()), 0..100_000_000_u64), 1..40),
-        stroke_m in proptest::array::uniform6(finite()), front_angle_rad in finite(),
+        stroke_m in proptest::array::uniform6(stroke_m()), front_angle_rad in -0.7..0.7_f64,
     ) {
         let mut bench = Bench::armed();
         bench.measured.stroke_m = stroke_m;
@@ -163,25 +168,34 @@ proptest! {
     }
 
     #[test]
-    fn rates_hold_whatever_is_asked_and_measured(
+    fn rates_hold_whatever_is_asked_and_measured_and_nothing_goes_where_nobody_asked(
         steps in proptest::collection::vec(
-            (command(finite().boxed()), proptest::array::uniform6(finite()), finite(), finite()), 2..60),
+            (command(finite().boxed()), proptest::array::uniform6(stroke_m()), -0.7..0.7_f64, finite()), 2..60),
     ) {
         let mut bench = Bench::armed();
         let mut before: Option<Command> = None;
         for (request, stroke_m, front_angle_rad, speed_m_s) in steps {
             bench.measured = Measured { stroke_m, front_angle_rad, speed_m_s, ..bench.measured };
-            let Some(now) = bench.run(Order::None, request).command() else { break };
+            let Some(now) = bench.run(Order::None, request).command() else {
+                panic!("{:?}", bench.state)
+            };
             if let Some(before) = before {
                 let dt_s = 1e-9 * TICK_NS as f64;
                 let turned = (now.front_angle_rad - before.front_angle_rad).abs();
                 prop_assert!(turned <= LIMITS.angle_rate_rad_s * dt_s + 1e-12);
                 let grown = now.throttle.abs() - before.throttle.abs();
                 prop_assert!(grown <= LIMITS.throttle_rate_s * dt_s + 1e-12);
-                if let (Arms::Position(a), Arms::Position(b)) = (now.arms, before.arms) {
-                    for (a, b) in a.iter().zip(b) {
-                        if let (Some(a), Some(b)) = (a, b) {
+                let asked = request.front_angle_rad.clamp(-LIMITS.angle_max_rad, LIMITS.angle_max_rad);
+                let off_rad = |held: &Command| (held.front_angle_rad - asked).abs();
+                prop_assert!(off_rad(&now) <= off_rad(&before) + 1e-12);
+                if let (Arms::Position(a), Arms::Position(b), Arms::Position(asked)) =
+                    (now.arms, before.arms, request.arms)
+                {
+                    for ((a, b), asked) in a.iter().zip(b).zip(asked) {
+                        if let (Some(a), Some(b), Some(asked)) = (a, b, asked) {
                             prop_assert!((a - b).abs() <= LIMITS.stroke_rate_m_s * dt_s + 1e-12);
+                            let asked = asked.clamp(0.0, LIMITS.stroke_max_m);
+                            prop_assert!((a - asked).abs() <= (b - asked).abs() + 1e-12);
                         }
                     }
                 }

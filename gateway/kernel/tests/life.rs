@@ -84,12 +84,14 @@ fn a_stamp_from_the_future_is_not_fresh() {
 #[test]
 fn each_hazard_blocks_and_stays_blocked_until_re_armed() {
     type Spoil = fn(&mut xt28_safety::Input);
-    let hazards: [(Spoil, Reason); 10] = [
+    let hazards: [(Spoil, Reason); 12] = [
         (|i| i.bus_ok = false, Reason::BusFault),
         (|i| i.alone = false, Reason::NotAlone),
         (|i| i.stamps.observation_ns = None, Reason::Stale(Stream::Observation)),
         (|i| i.stamps.policy_ns = None, Reason::Stale(Stream::Policy)),
         (|i| i.measured.stroke_m[3] = f64::NAN, Reason::MeasurementNotFinite),
+        (|i| i.measured.stroke_m[3] = 65.5, Reason::MeasurementImplausible),
+        (|i| i.measured.front_angle_rad = -0.9, Reason::MeasurementImplausible),
         (|i| i.measured.roll_rad = -19_f64.to_radians(), Reason::Roll),
         (|i| i.measured.pitch_rad = 26_f64.to_radians(), Reason::Pitch),
         (|i| i.arm.ready = false, Reason::ArmEcuNotReady),
@@ -207,7 +209,7 @@ fn the_brake_waits_for_a_machine_that_moves_but_not_for_ever() {
 }
 
 #[test]
-fn a_wire_that_breaks_moves_no_target_faster_than_its_rate() {
+fn a_wire_that_breaks_moves_no_target() {
     let mut bench = Bench::armed();
     bench.measured.front_angle_rad = -0.35;
     let ask = Command { front_angle_rad: -0.35, ..strokes(0.17) };
@@ -218,8 +220,26 @@ fn a_wire_that_breaks_moves_no_target_faster_than_its_rate() {
     bench.measured.front_angle_rad = 0.436;
     let held = bench.run(Order::None, ask).command().unwrap();
     let Arms::Position([_, _, Some(stroke_m), ..]) = held.arms else { panic!("{held:?}") };
-    assert!((stroke_m - 0.172).abs() < 1e-9, "{stroke_m}");
-    assert!((held.front_angle_rad + 0.35 - 0.3_f64.to_radians()).abs() < 1e-9, "{held:?}");
+    assert_eq!((stroke_m, held.front_angle_rad), (0.17, -0.35));
+}
+
+#[test]
+fn a_target_waits_for_an_arm_that_does_not_follow() {
+    let mut bench = Bench::armed();
+    let last_m = |bench: &mut Bench, asked_m: f64| {
+        let held = (0..200).map(|_| bench.run(Order::None, strokes(asked_m))).last();
+        let Some(Arms::Position([Some(stroke_m), ..])) =
+            held.and_then(|held| held.command()).map(|held| held.arms)
+        else {
+            panic!("{held:?}")
+        };
+        stroke_m
+    };
+    bench.measured.stroke_m[0] = 0.05;
+    assert!((last_m(&mut bench, 0.25) - 0.15).abs() < 1e-9);
+    bench.measured.stroke_m[0] = 0.02;
+    assert!((last_m(&mut bench, 0.25) - 0.15).abs() < 1e-9, "pushed away, it comes back");
+    assert!(last_m(&mut bench, 0.0).abs() < 1e-9);
 }
 
 #[test]

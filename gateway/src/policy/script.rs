@@ -133,10 +133,11 @@ impl Policy for Script {
         let here = Start { stroke_m: seen.stroke_m.0, front_angle_rad: seen.front_joint_rad };
         let Some(t_s) = seen.since_arming_s else {
             self.start = None;
-            // Before arming nothing of the script is in force, not even its commands at zero.
+            // Before arming nothing of the script is in force, not even its commands at zero; but this answer is
+            // the one that arming finds, and a brake must not open for it.
             let arms = Arms::Position([None; 6]);
-            let front_angle_rad = here.front_angle_rad;
-            return Some(Command { throttle: 0.0, front_angle_rad, arms, brake: false });
+            let (front_angle_rad, brake) = (here.front_angle_rad, self.at(0.0, &here).brake);
+            return Some(Command { throttle: 0.0, front_angle_rad, arms, brake });
         };
         self.now_s = t_s;
         let start = *self.start.get_or_insert(here);

@@ -38,6 +38,10 @@ pub(crate) struct Faults {
     pub(crate) gnss_code_only: bool,
     /// It does not vouch for the direction of its second antenna.
     pub(crate) gnss_headless: bool,
+    /// Fault bits of the arm and of the drive ECU.
+    pub(crate) bits: [u16; 2],
+    /// The drive ECU says that the parking brake is on.
+    pub(crate) is_braked: bool,
     /// Something is in the machine's way.
     pub(crate) wheels_held: bool,
 }
@@ -199,7 +203,7 @@ impl Bench {
             let status = ArmStatus {
                 mode: ArmStatusMode::Off,
                 state: if starts { ArmStatusState::Init } else { ArmStatusState::Standby },
-                faults: 0,
+                faults: self.faults.bits[0],
                 accepted: self.accepted[0],
                 reason: ArmStatusReason::None,
                 supply_v: 24.0,
@@ -213,10 +217,10 @@ impl Bench {
         let state = if safe_stop { DriveStatusState::SafeStop } else { DriveStatusState::Standby };
         let status = DriveStatus {
             state,
-            faults: 0,
+            faults: self.faults.bits[1],
             accepted: self.accepted[1],
             reason: DriveStatusReason::None,
-            brake: false,
+            brake: self.faults.is_braked,
             speed_m_s: 0.0,
             counter,
         };

@@ -19,12 +19,17 @@ const ROLLING_MAX: Duration = Duration::from_secs(5);
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ParkingBrake {
     applied: bool,
+    /// Somebody has commanded it since it started.
+    was_commanded: bool,
     stopping_since: Option<SimTime>,
 }
 
 impl ParkingBrake {
     /// Whether it is applied now. `commanded` is what a fresh command says of it. A brake that a
     /// safe stop applied stays on until a command releases it.
+    ///
+    /// A sender that falls silent is a stop in standby as well: one that had asked for rest while the machine
+    /// still rolled can no longer brake it.
     pub(crate) fn step(
         &mut self,
         now: SimTime,
@@ -36,7 +41,10 @@ impl ParkingBrake {
             // Its spring closed the brake while the ECU was dark; nobody has asked to open it.
             self.applied = true;
         }
-        if !matches!(state, State::SafeStop | State::Fault | State::Restarted(_)) {
+        self.was_commanded |= commanded.is_some();
+        let is_deserted = self.was_commanded && commanded.is_none();
+        let stops = matches!(state, State::SafeStop | State::Fault | State::Restarted(_));
+        if !stops && !is_deserted {
             self.stopping_since = None;
             self.applied = commanded.unwrap_or(self.applied);
             return self.applied;
@@ -65,6 +73,19 @@ mod tests {
         assert!(brake.step(at(30), State::SafeStop, Some(false), 0.1), "it stays on");
         assert!(brake.step(at(40), State::Standby, None, 0.0));
         assert!(!brake.step(at(50), State::Standby, Some(false), 0.0));
+    }
+
+    #[test]
+    fn a_sender_that_asks_for_rest_and_falls_silent_leaves_no_rolling_machine() {
+        let mut brake = ParkingBrake::default();
+        assert!(!brake.step(at(0), State::Standby, None, 1.0), "nobody has commanded it yet");
+        assert!(!brake.step(at(10), State::Standby, Some(false), 1.0));
+        assert!(!brake.step(at(20), State::Standby, None, 1.0));
+        assert!(!brake.step(at(5010), State::Standby, None, 1.0));
+        assert!(brake.step(at(5020), State::Standby, None, 1.0));
+        assert!(!brake.step(at(5030), State::Standby, Some(false), 1.0), "as it is told again");
+        assert!(!brake.step(at(5040), State::Standby, None, 0.5));
+        assert!(brake.step(at(5050), State::Standby, None, 0.01));
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! One GNSS epoch out of the receiver's messages: position, velocity and heading of one instant.
 
-use core::f64::consts::FRAC_PI_2;
+use core::f64::consts::{FRAC_PI_2, PI};
 
 use xt28_ubx::{
     CarrierSolution, Counts, FixType, Geodetic, Message, NavHpPosLlh, NavPvt, NavRelPosNed, Parser,
 };
 
 use crate::pose::wrap;
+
+/// The worst direction that is driven by, rad (assumed: 3 degrees put the machine 0.3 m aside of its way within 6 m).
+const HEADING_ACCURACY_MAX_RAD: f64 = 3.0 * PI / 180.0;
 
 /// What the receiver says of one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,8 +124,11 @@ impl EpochCollector {
 fn epoch(pvt: &NavPvt, fine: Option<&NavHpPosLlh>, relative: &NavRelPosNed) -> Epoch {
     let valid = pvt.position_valid && fine.is_none_or(|fine| fine.valid);
     // The baseline points forward: base antenna behind, rover antenna ahead.
-    let heading_rad =
-        (relative.heading_valid && relative.fix_ok).then(|| wrap(FRAC_PI_2 - relative.heading_rad));
+    // A receiver calls it valid before its ambiguities are fixed, however far it is off.
+    let sure = matches!(relative.carrier, CarrierSolution::Float | CarrierSolution::Fixed)
+        && relative.accuracy_heading_rad <= HEADING_ACCURACY_MAX_RAD;
+    let heading_rad = (relative.heading_valid && relative.fix_ok && sure)
+        .then(|| wrap(FRAC_PI_2 - relative.heading_rad));
     Epoch {
         position: fine.map_or(pvt.position, |fine| fine.position),
         velocity_m_s: [pvt.velocity_east_m_s, pvt.velocity_north_m_s, -pvt.velocity_down_m_s],
@@ -232,15 +238,25 @@ mod tests {
 
     #[test]
     fn a_heading_counts_only_where_it_is_valid_and_its_fix_is() {
-        for (heading_valid, fix_ok) in [(true, true), (true, false), (false, true)] {
+        let (fixed, float) = (CarrierSolution::Fixed, CarrierSolution::Float);
+        for (heading_valid, fix_ok, carrier, accuracy_deg, counts) in [
+            (true, true, fixed, 0.3, true),
+            (true, true, float, 2.9, true),
+            (true, false, fixed, 0.3, false),
+            (false, true, fixed, 0.3, false),
+            (true, true, CarrierSolution::None, 0.3, false),
+            (true, true, float, 3.1, false),
+        ] {
             let mut collector = EpochCollector::default();
             let mut epoch = messages(0);
             let Message::RelPosNed(relative) = &mut epoch[2] else { unreachable!() };
             (relative.heading_valid, relative.fix_ok) = (heading_valid, fix_ok);
+            relative.carrier = carrier;
+            relative.accuracy_heading_rad = f64::to_radians(accuracy_deg);
             // The fine position last: of a first epoch it is not waited for.
             let [pvt, _, relative] = epoch;
             let epoch = collector.push(&bytes(&[pvt, relative])).unwrap();
-            assert_eq!(epoch.heading_rad.is_some(), heading_valid && fix_ok);
+            assert_eq!(epoch.heading_rad.is_some(), counts);
         }
     }
 

@@ -8,6 +8,7 @@ mod args;
 mod departures;
 mod freshness;
 mod lateness;
+mod log;
 mod problem;
 mod realtime;
 mod report;

@@ -5,7 +5,7 @@
 //! wall-clock stamp; what counts of it is how long ago that was when the frame was taken.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -16,10 +16,13 @@ use xt28_dbc::Frame;
 use xt28_machine::SimTime;
 
 use crate::departures::Departures;
+use crate::log::Log;
 use crate::problem::Problem;
 
 /// How much longer than since the last look a frame seems to have waited, by the wall clock's pace.
 const SLACK: Duration = Duration::from_millis(10);
+/// So long a bus that took no frame counts as one that carries none, where nothing is sent that could tell (assumed).
+const STUCK: Duration = Duration::from_secs(1);
 /// How long is slept at most while frames wait for the kernel.
 const RETRY_AFTER: Duration = Duration::from_millis(1);
 
@@ -27,11 +30,11 @@ const RETRY_AFTER: Duration = Duration::from_millis(1);
 pub(crate) struct Wire {
     socket: SocketCan,
     start: SystemTime,
-    log: Option<Log<BufWriter<File>>>,
+    log: Option<Log>,
     departures: Departures,
-    /// Frames that had left when the queue was found full to the brim: until another one leaves, the bus
-    /// carries nothing.
-    stuck_at: Option<u64>,
+    /// Frames that had left when the queue was found full to the brim, and when that was: until another one
+    /// leaves the bus carries nothing, or until it is worth another try.
+    stuck: Option<(u64, SimTime)>,
 }
 
 impl Wire {
@@ -48,16 +51,17 @@ impl Wire {
                 let file = create(path)
                     .map_err(|source| Problem::Record { path: path.to_owned(), source })?;
                 let epoch = start.duration_since(UNIX_EPOCH).unwrap_or_default();
-                Some(Log::new(Writer::new(BufWriter::new(file), interface).starting_at(epoch)))
+                let writer = Writer::new(BufWriter::new(file), interface).starting_at(epoch);
+                Some(Log::start(writer).map_err(Problem::Thread)?)
             }
         };
-        Ok(Self { socket, start, log, departures: Departures::default(), stuck_at: None })
+        Ok(Self { socket, start, log, departures: Departures::default(), stuck: None })
     }
 
     /// Gives a frame to the kernel. A bus that takes none is no fault of the host: its frames are thrown
     /// away and counted, and [`Wire::is_well`] says so.
     pub(crate) fn send(&mut self, now: SimTime, frame: &Frame) -> Result<(), Problem> {
-        if self.stuck_at.is_some() {
+        if self.stuck.is_some() {
             // One frame at a time asks whether it takes any again.
             self.socket.discard_backlog();
         }
@@ -66,7 +70,7 @@ impl Wire {
         match self.socket.send(now, frame) {
             Ok(()) => self.departures.add(frame),
             Err(SocketError::BacklogFull { .. }) => {
-                self.stuck_at = Some(self.socket.counters().sent);
+                self.stuck = Some((self.socket.counters().sent, now));
                 self.socket.discard_backlog();
             }
             Err(error) => return Err(error.into()),
@@ -78,7 +82,7 @@ impl Wire {
     /// Logs what has left by `now`.
     fn settle(&mut self, now: SimTime) {
         let left = self.socket.counters().sent;
-        self.stuck_at = self.stuck_at.filter(|at| *at == left);
+        self.stuck = self.stuck.filter(|(at, since)| *at == left && now.since(*since) < STUCK);
         let gone = self.departures.settle(left, self.socket.backlog());
         gone.iter().for_each(|frame| self.log(now, frame));
     }
@@ -128,19 +132,12 @@ impl Wire {
 
     /// Whether the bus carries frames: the controller is not off it, was not since the last call, and some leave.
     pub(crate) fn is_well(&mut self) -> bool {
-        !self.socket.take_bus_off() && self.stuck_at.is_none()
+        !self.socket.take_bus_off() && self.stuck.is_none()
     }
 
     /// Whether all that passed is in the log, if one is wanted.
     pub(crate) fn log_is_whole(&self) -> bool {
-        self.log.as_ref().is_none_or(|log| log.broke.is_none())
-    }
-
-    /// Writes out the log so far: of a run that is about to end nothing is lost to whoever does not wait for it.
-    pub(crate) fn keep(&mut self) {
-        if let Some(log) = &mut self.log {
-            log.keep();
-        }
+        self.log.as_ref().is_none_or(Log::is_whole)
     }
 
     /// Writes out the log.
@@ -166,36 +163,6 @@ fn create(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// A log whose disk may be full: the bus goes on without it, since the machine is still to be stopped.
-struct Log<W> {
-    writer: Writer<W>,
-    broke: Option<io::Error>,
-}
-
-impl<W: Write> Log<W> {
-    const fn new(writer: Writer<W>) -> Self {
-        Self { writer, broke: None }
-    }
-
-    fn write(&mut self, at: SimTime, frame: &Frame) {
-        if self.broke.is_none() {
-            self.broke = self.writer.write(at, frame).err();
-        }
-    }
-
-    fn keep(&mut self) {
-        if self.broke.is_none() {
-            self.broke = self.writer.flush().err();
-        }
-    }
-
-    /// What went wrong first.
-    fn close(mut self) -> io::Result<()> {
-        self.keep();
-        self.broke.map_or(Ok(()), Err)
-    }
-}
-
 /// When a frame came in, on the run's clock: `now` less its age, which is what the wall clock says now
 /// (`wall`) less what it said then (`stamp`), all since the start. An age beyond `waited` says that the wall
 /// clock was set in between.
@@ -206,8 +173,6 @@ fn heard_at(now: Duration, waited: Duration, wall: Duration, stamp: Duration) ->
 
 #[cfg(test)]
 mod tests {
-    use xt28_dbc::CanId;
-
     use super::*;
 
     #[test]
@@ -220,30 +185,6 @@ mod tests {
         assert_eq!(create(&path).unwrap_err().kind(), io::ErrorKind::AlreadyExists);
         assert_eq!(std::fs::read(&path).unwrap(), b"(0.0) can0 001#");
         create(Path::new("/dev/null")).expect("no file to lose");
-    }
-
-    #[test]
-    fn a_log_keeps_its_first_fault_to_the_end_and_writes_nothing_behind_it() {
-        let frame = Frame::new(CanId::Standard(1), &[]).unwrap();
-        let line = "(0.000000) can0 001#\n";
-        let mut disk = vec![0; line.len() + 3];
-        let mut log = Log::new(Writer::new(&mut disk[..], "can0"));
-        log.write(SimTime::ZERO, &frame);
-        assert!(log.broke.is_none());
-        (0..3).for_each(|_| log.write(SimTime::ZERO, &frame));
-        assert_eq!(log.close().unwrap_err().kind(), io::ErrorKind::WriteZero);
-        assert_eq!(disk, format!("{line}(0.").into_bytes());
-    }
-
-    #[test]
-    fn a_log_that_is_kept_waits_in_no_buffer() {
-        let frame = Frame::new(CanId::Standard(1), &[]).unwrap();
-        let mut log = Log::new(Writer::new(BufWriter::new(Vec::new()), "can0"));
-        log.write(SimTime::ZERO, &frame);
-        log.keep();
-        log.write(SimTime::ZERO, &frame);
-        let disk = log.writer.into_inner();
-        assert_eq!(disk.get_ref(), b"(0.000000) can0 001#\n", "the second waits still");
     }
 
     #[test]

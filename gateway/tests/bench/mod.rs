@@ -228,7 +228,7 @@ impl Bench {
     }
 
     /// The antenna's fix, mount and lean included.
-    fn receiver_bytes(&self, o: &gateway::Observation) -> Vec<u8> {
+    pub(crate) fn receiver_bytes(&self, o: &gateway::Observation) -> Vec<u8> {
         let located = o.located.unwrap();
         let (sin, cos) = located.pose.heading_rad.sin_cos();
         let ahead_m = -0.30 * o.attitude.pitch_rad.cos() - 3.1 * o.attitude.pitch_rad.sin();

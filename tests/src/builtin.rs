@@ -64,6 +64,16 @@ fn script(path: &Path) -> io::Result<String> {
     found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
+/// Files of a built-in scenario, each with its text: the scenario's own first, then what lies beside it.
+#[must_use]
+pub fn files_of(name: &str) -> Vec<(String, &'static str)> {
+    let is_own = |file: &str| {
+        file == name || file.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+    };
+    let all = BUILTIN.iter().chain(SCRIPTS).filter(|(file, _)| is_own(file));
+    all.map(|(file, text)| (format!("{file}.toml"), *text)).collect()
+}
+
 impl Scenario {
     /// The scenario `wanted`: a built-in name, or a path when it ends in `.toml` or has a `/`.
     ///

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use ecu_emu::Profile;
+
 use crate::{Scenario, ScenarioError};
 
 /// Text of a script policy.
@@ -23,7 +25,17 @@ impl Scenario {
         policy.clone_into(&mut self.policy);
         "--policy".clone_into(&mut self.policy_at);
         self.script = None;
+        self.ensure_it_drives()?;
         self.find_policy(Path::new(""), &|file| std::fs::read_to_string(file))
+    }
+
+    /// Refuses a policy that would have nothing to drive: the ECUs of 2016 take no commands.
+    pub(crate) fn ensure_it_drives(&self) -> Result<(), ScenarioError> {
+        if self.profile == Profile::Firmware2016 && self.policy != "hold" {
+            let (policy_at, policy) = (self.policy_at.clone(), self.policy.clone());
+            return Err(ScenarioError::NotDriven { policy_at, policy });
+        }
+        Ok(())
     }
 
     /// Finds the file that the policy names, if it names one, `beside` the scenario's own, and reads a script.
@@ -60,5 +72,17 @@ mod tests {
         assert_eq!((scenario.policy.as_str(), &scenario.script), ("goto:10,0,0", &None));
         let error = scenario.drive_by("script:no/such.toml").unwrap_err().to_string();
         assert!(error.starts_with("--policy: ") && error.contains("no/such.toml"), "{error}");
+    }
+
+    #[test]
+    fn ecus_that_take_no_commands_are_driven_by_no_policy() {
+        let mut scenario = Scenario::find("2016-pedal").unwrap();
+        scenario.drive_by("hold").unwrap();
+        let error = scenario.drive_by("goto:25,0,0").unwrap_err().to_string();
+        assert!(error.starts_with("--policy: `goto:25,0,0` would drive nothing"), "{error}");
+        let text = "title = \"t\"\npolicy = \"goto:1,0,0\"\nduration_s = 9\nprofile = \"2016\"\n";
+        let nothing = |_: &Path| Err(io::ErrorKind::NotFound.into());
+        let error = Scenario::parse(text, Path::new("t.toml"), nothing).unwrap_err().to_string();
+        assert!(error.starts_with("t.toml:2: `goto:1,0,0` would"), "{error}");
     }
 }

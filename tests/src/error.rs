@@ -23,7 +23,7 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// The text is no scenario: bad TOML, an unknown key, a value of another type.
-    #[error("{path}:{line}: {problem}; keys carry their unit, as duration_s and height_m do")]
+    #[error("{path}:{line}: {problem}{}", remedy(.problem))]
     Parse {
         /// The file.
         path: PathBuf,
@@ -43,7 +43,9 @@ pub enum ScenarioError {
         problem: String,
     },
     /// The script that the policy names could not be read.
-    #[error("{policy_at}: cannot read {script}: {source}; a script lies beside its scenario file")]
+    #[error(
+        "{policy_at}: cannot read {script}: {source}; a script is looked for beside the scenario file, and that of --policy from the working folder on"
+    )]
     Script {
         /// File and line of the policy.
         policy_at: String,
@@ -59,6 +61,16 @@ pub enum ScenarioError {
         operator_at: String,
         /// What is wrong with the script.
         source: OperatorError,
+    },
+    /// A policy with nothing to drive.
+    #[error(
+        "{policy_at}: `{policy}` would drive nothing: the ECUs of profile 2016 take no commands, and the operator in the cab drives; take `hold`, or profile paper"
+    )]
+    NotDriven {
+        /// File and line of the policy, or the option.
+        policy_at: String,
+        /// The policy.
+        policy: String,
     },
     /// The terrain that it names was refused.
     #[error("{terrain_at}: {source}")]
@@ -111,6 +123,20 @@ impl ScenarioError {
             line: line_at(text, start),
             problem: error.message().replace('\n', " "),
         }
+    }
+}
+
+/// What mends what the TOML reader found.
+fn remedy(problem: &str) -> &'static str {
+    let of = |words: &str| problem.contains(words);
+    if of("unknown field") || of("missing field") {
+        "; keys carry their unit, as duration_s and height_m do"
+    } else if of("wanted exactly 1 element") {
+        "; an [[expect]] has one key, and keys of the scenario itself stand above the first table"
+    } else if of("invalid type: map, expected a sequence") {
+        "; of such tables there may be several: write double brackets, as [[expect]]"
+    } else {
+        ""
     }
 }
 

@@ -91,6 +91,8 @@ pub struct Evidence<'a> {
     pub scenario: &'a Scenario,
     /// The machine it ran on.
     pub machine: &'a Machine,
+    /// What it carries beyond that, kg.
+    pub payload_kg: f64,
     /// What the bus said.
     pub trace: &'a Trace,
     /// What was true, where the bench can know it.

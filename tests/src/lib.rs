@@ -30,7 +30,7 @@ pub mod trace;
 mod trouble;
 mod truth;
 
-pub use builtin::BUILTIN;
+pub use builtin::{BUILTIN, files_of};
 pub use cab_script::CabScript;
 pub use conditions::Conditions;
 pub use controller::{Controller, Hearer, Terms};

@@ -104,6 +104,7 @@ impl Scenario {
             terrain_at: format!("{}:{}", path.display(), line_of(text, "terrain")),
             source,
         })?;
+        scenario.ensure_it_drives()?;
         scenario.find_policy(beside, &read)?;
         if let Some(file) = &mut scenario.operator {
             *file = beside.join(&file);
@@ -286,7 +287,7 @@ stands-still = { below_m_s = 0.02 }
             let keys =
                 format!("profile = \"{profile}\"\noperator = \"cab.toml\"\n\n[terrain.ramp]");
             Scenario::parse(
-                &GOOD.replace("[terrain.ramp]", &keys),
+                &GOOD.replace("goto:15,0,0", "hold").replace("[terrain.ramp]", &keys),
                 Path::new("a/ramp.toml"),
                 |path| {
                     assert_eq!(path, Path::new("a/cab.toml"));

@@ -126,9 +126,11 @@ impl Setup {
     /// What the scenario's expectations find in a recorded run.
     #[must_use]
     pub fn judge(&self, trace: &Trace, truth: Option<&Truth>) -> Vec<Finding> {
+        let effects = self.overlay.effects(&self.machine);
         crate::expect::judge(&Evidence {
             scenario: &self.scenario,
             machine: &self.machine,
+            payload_kg: effects.map_or(0.0, |effects| effects.masses.payload.mass_kg),
             trace,
             truth,
         })

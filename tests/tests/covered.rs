@@ -16,7 +16,8 @@ fn scenario(toml: &str) -> Scenario {
 /// Whether the one expectation `toml` holds of all that it judges.
 fn holds(toml: &str, trace: &Trace, truth: Option<&Truth>) -> bool {
     let (scenario, machine) = (scenario(toml), Machine::xt28());
-    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth };
+    let evidence =
+        Evidence { scenario: &scenario, machine: &machine, payload_kg: 0.0, trace, truth };
     let findings = scenario.expectations[0].judge(&evidence);
     assert!(!findings.is_empty());
     findings.iter().all(Finding::passed)
@@ -128,7 +129,13 @@ fn a_log_without_a_frame_covers_no_run() {
     scenario.duration_s = 0.4;
     let (machine, mut trace) = (Machine::xt28(), Trace::default());
     let passed = |trace: &Trace| {
-        let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth: None };
+        let evidence = Evidence {
+            scenario: &scenario,
+            machine: &machine,
+            payload_kg: 0.0,
+            trace,
+            truth: None,
+        };
         xt28_scenarios::expect::judge(&evidence).iter().all(Finding::passed)
     };
     assert!(!passed(&trace));

@@ -17,7 +17,8 @@ fn judge_with(toml: &str, trace: &Trace, truth: Option<&Truth>) -> Vec<Finding> 
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     let scenario = Scenario::parse(&text, Path::new("t.toml"), none).expect("a good scenario");
     let machine = Machine::xt28();
-    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth };
+    let evidence =
+        Evidence { scenario: &scenario, machine: &machine, payload_kg: 0.0, trace, truth };
     scenario.expectations[0].judge(&evidence)
 }
 

@@ -18,7 +18,8 @@ fn parse(text: &str) -> Result<Scenario, String> {
 fn judge(toml: &str, trace: &Trace, truth: Option<&Truth>) -> Vec<Finding> {
     let text = format!("title = \"t\"\npolicy = \"hold\"\nduration_s = 10\n{toml}\n");
     let (scenario, machine) = (parse(&text).unwrap(), Machine::xt28());
-    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth };
+    let evidence =
+        Evidence { scenario: &scenario, machine: &machine, payload_kg: 0.0, trace, truth };
     scenario.expectations[0].judge(&evidence)
 }
 
@@ -170,7 +171,7 @@ fn a_log_fills_its_run_with_frames_that_decode() {
         let fault = Fault { at_s: 1.0, what: "0CFF4027#: wrong".to_owned() };
         let trace = Trace { end_s, frames: 9, faults: vec![fault; faults], ..Trace::default() };
         let (scenario, machine, trace) = (&scenario, &machine, &trace);
-        let evidence = Evidence { scenario, machine, trace, truth: None };
+        let evidence = Evidence { scenario, machine, payload_kg: 0.0, trace, truth: None };
         let findings = xt28_scenarios::expect::judge(&evidence);
         findings.iter().map(Finding::passed).collect::<Vec<_>>()
     };

@@ -13,7 +13,8 @@ fn holds(toml: &str, trace: &Trace) -> bool {
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     let scenario = Scenario::parse(&text, Path::new("t.toml"), none).expect("a good scenario");
     let machine = Machine::xt28();
-    let evidence = Evidence { scenario: &scenario, machine: &machine, trace, truth: None };
+    let evidence =
+        Evidence { scenario: &scenario, machine: &machine, payload_kg: 0.0, trace, truth: None };
     let findings = scenario.expectations[0].judge(&evidence);
     assert_eq!(findings.len(), 1);
     findings.iter().all(Finding::passed)

@@ -1,4 +1,4 @@
-//! The wheels together carry the machine's weight once it stands.
+//! The wheels together carry the weight of the machine and its payload once it stands.
 
 use serde::Deserialize;
 use xt28_machine::{GRAVITY_M_S2, PerWheel};
@@ -24,8 +24,8 @@ const N_PER_KN: f64 = 1e3;
 
 impl CarriesWeight {
     pub(super) fn judge(&self, evidence: &Evidence<'_>) -> Vec<Finding> {
-        let Evidence { trace, machine, truth, .. } = evidence;
-        let weight_kn = machine.mass_kg() * GRAVITY_M_S2 / N_PER_KN;
+        let Evidence { trace, machine, payload_kg, truth, .. } = evidence;
+        let weight_kn = (machine.mass_kg() + payload_kg) * GRAVITY_M_S2 / N_PER_KN;
         let tolerance = weight_kn * self.within_percent / 100.0;
         let wanted = Bound::Near { value: weight_kn, tolerance };
         let finding = |what: &str, sum_n: Result<Option<f64>, String>| match sum_n {

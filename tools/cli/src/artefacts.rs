@@ -1,7 +1,7 @@
 //! The files a run leaves: its log, its picture, its report.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use xt28_scenarios::{Picture, Recording, Report, RunError, Setup};
@@ -75,7 +75,17 @@ impl Artefacts {
         let files = self.files();
         let read: Vec<&Path> = read.into_iter().collect();
         let outputs = files.iter().map(|(option, path)| (*option, Some(path)));
-        Outputs::new(outputs).ensure_apart(read)
+        Outputs::new(outputs).ensure_apart(read)?;
+        match &self.log {
+            Some(log) if !may_be_replaced(log)? => {
+                let (log, option) = (log.display(), self.log_option);
+                Err(format!(
+                    "{log}: it holds what no run of the bench wrote; give {option} another"
+                )
+                .into())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What went wrong with a run, with the log's name where that is what went wrong.
@@ -114,6 +124,21 @@ impl Artefacts {
     }
 }
 
+/// Whether a log may be written over: one of the bench is made again in a moment, one of a machine is not. The bench's
+/// begin at zero, where others have the time of day.
+fn may_be_replaced(path: &Path) -> Result<bool, Failure> {
+    let mut head = Vec::new();
+    match File::open(path) {
+        Ok(file) if file.metadata()?.is_file() => {
+            file.take(BENCH.len() as u64).read_to_end(&mut head)?
+        }
+        _ => return Ok(true),
+    };
+    Ok(head.is_empty() || head == BENCH)
+}
+
+/// How a log of the bench begins.
+const BENCH: &[u8] = b"(0.";
 /// What is written beside the log, in this order.
 const ENDINGS: [&str; 2] = ["svg", "json"];
 const OUT: &str = "--out";

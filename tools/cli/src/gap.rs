@@ -1,5 +1,6 @@
 //! `xt28 gap`: where a machine's logs part from the simulator. One file a task, in `gap/`.
 
+mod asked;
 mod check;
 mod diagnose;
 mod drive;

@@ -95,6 +95,10 @@ impl Replay {
             return Ok(About::terrain_of(path, &self.log)?);
         }
         if !beside.exists() {
+            eprintln!(
+                "ASSUMED: {} was driven on level ground; say --terrain or --about if it was not",
+                self.log.display()
+            );
             return Ok(Terrain::Flat);
         }
         if About::load(&beside)?.run_of(&self.log).is_none() {

@@ -51,6 +51,9 @@ fn an_answer_comes_as_text_json_report_and_overlay() {
     assert_eq!(report.matches("nothing was foretold").count(), 1);
     let is_held = |note: &&serde_json::Value| note.as_str().unwrap().contains("held out");
     assert_eq!(answer["notes"].as_array().unwrap().iter().filter(is_held).count(), 1);
+    assert_eq!(answer["asked"]["logs"][0]["sha256"].as_str().map(str::len), Some(64));
+    assert_eq!(answer["asked"]["dbc"]["file"], DBC);
+    assert_eq!(answer["asked"]["fitted_runs"], serde_json::json!(["short.log"]));
     // Another command takes the causes found.
     let output = xt28(&["run", "straight-25m", "--effects", &overlay, "--solver", "reduced"]);
     assert_ne!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stderr));

@@ -32,6 +32,10 @@ fn path(folder: &tempfile::TempDir, name: &str) -> String {
 const SCENARIO: &str = "title = \"t\"\npolicy = \"hold\"\nduration_s = 0.2\n";
 const FLIES: &str = "[[expect]]\nreaches-pose = { x_m = 9, y_m = 0, heading_deg = 0, within_m = 1, within_deg = 9 }\n";
 
+/// A log of an earlier run, and one of a machine.
+const OLD: &str = "(0.000137) vcan0 001#\n";
+const FIELD: &str = "(1758184151.281373) can0 001#\n";
+
 #[test]
 fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
     let heavy = "[[effect]]\nname = \"payload\"\nmass_kg = 14000.0\n";
@@ -41,7 +45,8 @@ fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
         ("bad.toml", &SCENARIO.replace("hold", "nosuch")),
         ("heavy.toml", heavy),
         ("weak.toml", &builtin.replace("load_max_kg = 14000.0", "load_max_kg = 9000.0")),
-        ("old.log", "kept"),
+        ("old.log", OLD),
+        ("field.log", FIELD),
     ]);
     let names = ["s.toml", "bad.toml", "heavy.toml", "weak.toml", "old.log"];
     let [s, bad, heavy, weak, log] = names.map(|name| path(&folder, name));
@@ -49,9 +54,13 @@ fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
     assert!(talk.contains("bad.toml:2: no policy"), "{talk}");
     let talk = refusal(&["run", &s, "--machine", &weak, "--effects", &heavy, "--record", &log]);
     assert!(talk.contains("more than this machine carries"), "{talk}");
-    assert_eq!(fs::read_to_string(&log).unwrap(), "kept");
+    assert_eq!(fs::read_to_string(&log).unwrap(), OLD);
     assert!(xt28(&["run", &s, "--record", &log]).status.success());
-    assert_ne!(fs::read_to_string(&log).unwrap(), "kept");
+    assert_ne!(fs::read_to_string(&log).unwrap(), OLD);
+    let field = path(&folder, "field.log");
+    let talk = refusal(&["run", &s, "--record", &field]);
+    assert!(talk.contains("no run of the bench wrote; give --record another"), "{talk}");
+    assert_eq!(fs::read_to_string(&field).unwrap(), FIELD);
 }
 
 #[test]

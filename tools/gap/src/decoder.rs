@@ -86,6 +86,11 @@ impl Decoder {
         self.messages.values().find_map(|tap| tap.step_of(channel))
     }
 
+    /// Name of the message with this identifier; the identifier itself where nothing is read of it.
+    pub(crate) fn name_of_message(&self, id: CanId) -> String {
+        self.tap(id).map_or_else(|| id.to_string(), |tap| tap.name().to_owned())
+    }
+
     pub(crate) fn tap(&self, id: CanId) -> Option<&Tap> {
         self.messages.get(&id.dbc())
     }

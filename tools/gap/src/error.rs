@@ -228,15 +228,31 @@ pub enum GapError {
     },
     /// There is too little of a log.
     #[error(
-        "{log}: {duration_s:.2} s long, and a diagnosis needs {least_s:.0} s of one run; leave it out or record longer"
+        "{log}: {duration_s:.2} s of it have every signal that a diagnosis needs, and it needs {least_s:.0} s of one run; leave the log out or record longer"
     )]
     TooShort {
         /// The log.
         log: String,
-        /// Its length, s.
+        /// The longest stretch of it with every signal, s.
         duration_s: f64,
         /// The least, s.
         least_s: f64,
+    },
+    /// A log is two, at the same time.
+    #[error(
+        "{log}:{line}: {message} comes on {one} and on {other}, and says different things there: that is two machines; keep one, as `grep ' {one} '` does"
+    )]
+    TwoMachines {
+        /// The log.
+        log: String,
+        /// The first line of the second.
+        line: u64,
+        /// A message that both send.
+        message: String,
+        /// The interface that it came on first.
+        one: String,
+        /// The other.
+        other: String,
     },
     /// A log is two, one after the other.
     #[error(

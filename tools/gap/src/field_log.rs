@@ -4,6 +4,7 @@ mod attendance;
 mod gaps;
 mod gzip;
 mod intake;
+mod interfaces;
 mod order;
 mod stillness;
 mod thinned;

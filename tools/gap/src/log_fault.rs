@@ -101,6 +101,13 @@ pub enum FaultKind {
         /// Such frames.
         frames: u64,
     },
+    /// All bits of frames are one: not available, as J1939 has it. They are left out.
+    Unavailable {
+        /// Message.
+        message: String,
+        /// Frames left out.
+        frames: u64,
+    },
     /// The CRC of frames is not that of their data; they are left out.
     BadCrc {
         /// Message.
@@ -212,9 +219,9 @@ impl FaultKind {
     /// Whether it leaves out frames of `message` or values of `channel`.
     pub(crate) fn leaves_out(&self, message: &str, channel: &str) -> bool {
         match self {
-            Self::WrongLength { message: of, .. } | Self::BadCrc { message: of, .. } => {
-                of == message
-            }
+            Self::WrongLength { message: of, .. }
+            | Self::BadCrc { message: of, .. }
+            | Self::Unavailable { message: of, .. } => of == message,
             Self::Unbelievable { channel: of, .. } => of == channel,
             _ => false,
         }
@@ -264,6 +271,10 @@ impl fmt::Display for LogFault {
             FaultKind::WrongLength { message, found, wanted, frames } => write!(
                 f,
                 "{message} has {found} bytes where the DBC says {wanted}; {frames} such frames are left out, so check that log and DBC belong together"
+            ),
+            FaultKind::Unavailable { message, frames } => write!(
+                f,
+                "{message} says of all its signals that they are not available, in {frames} frames from here on; they are left out"
             ),
             FaultKind::Padded { message, found, wanted, frames } => write!(
                 f,

@@ -17,6 +17,7 @@ mod horizon;
 mod html;
 mod machine_view;
 mod named;
+mod overlay;
 mod rows;
 mod size;
 mod strip;
@@ -30,4 +31,5 @@ mod words;
 
 pub use headline::headline;
 pub use html::{Subject, html};
+pub use overlay::overlay;
 pub use text::text;

@@ -8,6 +8,9 @@ use proptest::prelude::*;
 use xt28_gap::{Channel, FaultKind, FieldLog, GapError};
 use xt28_machine::Wheel;
 
+/// What the frames for the front strokes are read as.
+const STROKE: Channel = Channel::Stroke(Wheel::Fr);
+
 /// Lines in order of how late each was written: frame `i` by `late_us[i]`.
 fn written_late(late_us: &[u32]) -> String {
     let mut lines: Vec<(u32, String)> = frames()
@@ -25,6 +28,40 @@ fn two_interfaces_a_few_microseconds_apart_lose_no_frame() {
     let log_of_two = read(&written_late(&[0, 300, 7])).unwrap();
     assert_eq!(log_of_two.faults(), []);
     assert_eq!(log_of_two.all_series(), read(&log()).unwrap().all_series());
+}
+
+#[test]
+fn two_machines_on_two_interfaces_are_told_and_none_is_taken() {
+    let both = |strokes: &str| -> String {
+        let pair = |(us, frame): (u32, String)| {
+            let other = frame.replace("18FE1026#2A002B00", strokes);
+            line(us, "can0", &frame) + &line(us + 300, "can1", &other)
+        };
+        frames().into_iter().map(|(us, frame)| pair((us, frame.to_owned()))).collect()
+    };
+    let bridged = read(&both("18FE1026#2A002B00")).unwrap();
+    // Of the first two nothing tells yet how often the message comes.
+    assert_eq!(bridged.series(STROKE).unwrap().len(), 101);
+    let refused = read(&both("18FE1026#2A003B00")).unwrap_err().to_string();
+    let wanted = "a.log:8: PosFront comes on can0 and on can1, and says different things there";
+    assert!(refused.starts_with(wanted) && refused.contains("grep ' can0 '"), "{refused}");
+}
+
+#[test]
+fn a_frame_of_nothing_but_ones_is_no_reading() {
+    let mut tick = -1;
+    let blank = |line: &str| {
+        tick += i32::from(line.contains("18FE1026"));
+        let is_blank = (20..23).contains(&tick);
+        let ones = "18FE1026#FFFFFFFFFFFFFFFF";
+        (if is_blank { line.replace("18FE1026#2A002B00", ones) } else { line.to_owned() }) + "\n"
+    };
+    let text: String = log().lines().map(blank).collect();
+    let log = read(&text).unwrap();
+    assert_eq!(log.series(STROKE).unwrap().len(), 97);
+    let told = log.faults().iter().map(ToString::to_string).find(|told| told.contains("available"));
+    let wanted = "PosFront says of all its signals that they are not available, in 3 frames";
+    assert!(told.as_ref().is_some_and(|told| told.contains(wanted)), "{told:?}");
 }
 
 #[test]

@@ -55,8 +55,12 @@ impl fmt::Display for Remedy<'_> {
         let is_virtual = name.starts_with("vcan");
         match self.reason {
             OpenReason::BadName => f.write_str("try vcan0 or can0"),
-            OpenReason::NotLinux => f.write_str("use the virtual bus"),
-            OpenReason::NoCan => f.write_str("try `modprobe can-raw`, or use the virtual bus"),
+            OpenReason::NotLinux => {
+                f.write_str("CAN interfaces are Linux's; `xt28 run` needs none")
+            }
+            OpenReason::NoCan => {
+                f.write_str("try `modprobe can-raw`; `xt28 run` needs no interface")
+            }
             OpenReason::NoInterface if is_virtual => write!(
                 f,
                 "make it with `ip link add dev {name} type vcan && ip link set {name} up`"

@@ -14,6 +14,7 @@ use xt28_machine::Machine;
 use xt28_sim::effects::Overlay;
 
 use super::about;
+use super::asked::{Answered, Asked, Input};
 use super::drive::{ensure_free, script_beside, write_drive};
 use super::remarks::{Given, remarks};
 use crate::files::{Outputs, write};
@@ -87,7 +88,8 @@ pub(crate) struct Diagnose {
 }
 
 /// What is noted where the drive to make next, if any, is for something else.
-const NOTHING_APART: &str = "No scripted drive is left that would tell likely causes apart";
+const NOTHING_APART: &str =
+    "No scripted drive would tell the likely causes apart better than these logs do";
 
 impl Diagnose {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
@@ -176,7 +178,7 @@ impl Diagnose {
             let unwritten =
                 self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
             diagnosis.notes.push(format!(
-                "{NOTHING_APART}, and no drive that was not made would test more.{}",
+                "{NOTHING_APART}, and none would test more effects.{}",
                 unwritten.unwrap_or_default()
             ));
             return Ok(());
@@ -206,19 +208,30 @@ impl Diagnose {
         Ok(Subject { name: about.case, date: about.date.unwrap_or_default() })
     }
 
+    /// What the answer rests on.
+    fn asked(&self, inquiry: &Inquiry) -> Result<Asked, Failure> {
+        let input = |path: &PathBuf| Input::of(path);
+        let given = |path: &Option<PathBuf>| path.as_ref().map(input).transpose();
+        let fitted = inquiry.runs.iter().filter(|run| run.fit);
+        Ok(Asked {
+            program: concat!("xt28 ", env!("CARGO_PKG_VERSION")).to_owned(),
+            logs: self.logs.iter().map(input).collect::<Result<_, _>>()?,
+            fitted_runs: fitted.map(FieldRun::file).collect(),
+            dbc: input(&self.dbc)?,
+            mapping: given(&self.mapping)?,
+            machine: given(&self.machine)?,
+            effects: given(&self.effects)?,
+            about: given(&about(&self.logs, self.about.as_ref())?)?,
+            terrain: self.terrain.as_ref().map(|ground| ground.display().to_string()),
+        })
+    }
+
     fn write(&self, inquiry: &Inquiry, diagnosis: &Diagnosis) -> Result<(), Failure> {
         let json = self.json.as_ref().map(|path| -> Result<_, Failure> {
-            Ok((path, format!("{}\n", serde_json::to_string_pretty(diagnosis)?)))
+            let answered = Answered { answer: diagnosis, asked: self.asked(inquiry)? };
+            Ok((path, format!("{}\n", serde_json::to_string_pretty(&answered)?)))
         });
-        let overlay = self.overlay.as_ref().map(|path| {
-            let head = page::headline(diagnosis).replace('\n', " ");
-            let late = diagnosis.stood_by().filter_map(|cause| {
-                let (name, begins) = (cause.effect.name, cause.begins.as_ref()?);
-                Some(format!("# {name} begins {begins}; here it is there from the start.\n"))
-            });
-            let late: String = late.collect();
-            Ok((path, format!("# {head}\n{late}\n{}", diagnosis.overlay().to_toml())))
-        });
+        let overlay = self.overlay.as_ref().map(|path| Ok((path, page::overlay(diagnosis))));
         let report = self.report.as_ref().map(|path| -> Result<_, Failure> {
             let details = Details::new(inquiry, diagnosis)?;
             Ok((path, page::html(&self.subject()?, &inquiry.machine, diagnosis, &details)))

@@ -22,9 +22,8 @@ use crate::{Failure, Verdict};
 ///
 /// A block's gap is the root mean square of all its signals' errors on all logs, in units of what separates
 /// two models of one nominal machine. Masses, stiffnesses and the like are where they fit best, and no effect is
-/// believed but those of --effects. Gaps of `diagnose` are others: of each signal alone, on the logs that are
-/// fitted, with every effect a little there too, and each tolerance held to 2.5 of its own (1 where the verdict
-/// is unknown).
+/// believed but those of --effects. `diagnose` shows other gaps: of each signal alone, on the logs that are
+/// fitted, and with small effects allowed for as well.
 ///
 /// A sound machine, whose every part is a little off, shows up to about 2.5; beyond 3.2 there is something to
 /// explain. Blocks of which nothing can be judged have none: how the machine stands, travels and is driven is

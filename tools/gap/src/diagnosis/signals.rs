@@ -17,6 +17,7 @@ use super::floors::Floors;
 use crate::{Channel, FieldLog, GapError, PumpSide, Series, SteerSide};
 pub(in crate::diagnosis) use command_period::{PERIOD_S, command_periods_s};
 use made::Made;
+pub(in crate::diagnosis) use made::Make;
 pub(in crate::diagnosis) use receiver::unwound;
 pub use smoothed::StrokeJump;
 pub(in crate::diagnosis) use smoothed::slope_over;

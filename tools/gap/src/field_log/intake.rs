@@ -11,6 +11,7 @@ use xt28_machine::SimTime;
 
 use super::FieldLog;
 use super::attendance::Attendance;
+use super::interfaces::{Interfaces, TwoMachines};
 use super::order::{Order, Place};
 use super::stillness::Stillness;
 use super::thinned::is_thinned;
@@ -38,6 +39,9 @@ pub(super) struct Intake {
     ahead: Option<LongestSpan>,
     pauses_s: Vec<[f64; 2]>,
     messages: BTreeMap<CanId, Attendance>,
+    interfaces: Interfaces,
+    /// Frames of a message that say nothing, and the line of the first.
+    unavailable: BTreeMap<CanId, (u64, u64)>,
     stillness: Stillness,
     refused: BTreeMap<Channel, (u64, ValueError, u64)>,
     line: u64,
@@ -49,6 +53,11 @@ struct LongestSpan {
     line: u64,
     span: Duration,
     times: u64,
+}
+
+/// Whether all bits of a whole frame are one, which is how J1939 says of each signal that it is not available.
+fn says_nothing(frame: &Frame) -> bool {
+    frame.data().len() == 8 && frame.data().iter().all(|byte| *byte == 0xFF)
 }
 
 impl LongestSpan {
@@ -65,6 +74,7 @@ impl Intake {
     pub(super) fn take(&mut self, decoder: &Decoder, record: &Record, line: u64) {
         self.frames += 1;
         self.line = line;
+        self.interfaces.note(record, line);
         match self.order.put(record.at, line, record.frame) {
             Place::Next => {}
             Place::Late(by) => LongestSpan::note(&mut self.late, line, by),
@@ -102,6 +112,10 @@ impl Intake {
             return;
         };
         self.known_frames += 1;
+        if says_nothing(frame) {
+            self.unavailable.entry(frame.id()).or_insert((line, 0)).1 += 1;
+            return;
+        }
         let at_s = (at - first).as_secs_f64();
         let attendance = self.messages.entry(frame.id()).or_default();
         if attendance.is_repeat(tap, at, line, frame) {
@@ -131,6 +145,12 @@ impl Intake {
             // Not what came after is out of time, but what came before.
             let by_s = -span.as_secs_f64();
             return Err(GapError::ClockSteps { log: name.to_string(), line, by_s });
+        }
+        let known = |id| decoder.tap(id).is_some();
+        if let Some(TwoMachines { id, interfaces, line }) = self.interfaces.two_machines(known) {
+            let (log, message) = (name.to_string(), decoder.name_of_message(id));
+            let [one, other] = interfaces.map(|name| name.to_string());
+            return Err(GapError::TwoMachines { log, line, message, one, other });
         }
         let mut kinds = std::mem::take(&mut self.faults);
         kinds.extend(self.faults_of_frames(decoder));
@@ -199,6 +219,10 @@ impl Intake {
             if let Some(tap) = decoder.tap(*id) {
                 kinds.extend(attendance.faults(tap));
             }
+        }
+        for (id, (line, frames)) in &self.unavailable {
+            let (message, frames) = (decoder.name_of_message(*id), *frames);
+            kinds.push((*line, FaultKind::Unavailable { message, frames }));
         }
         for (channel, (line, error, values)) in &self.refused {
             let (channel, problem) = (channel.to_string(), error.to_string());

@@ -40,8 +40,8 @@ pub(super) const fn share_of(of: ShareOf) -> &'static str {
 /// How to read those shares, where that is not plain.
 pub(super) fn how_to_read_shares(of: ShareOf) -> Option<&'static str> {
     (of == ShareOf::Machine).then_some(
-        "What the measured outputs of arms, joints and drive take off the gap is the share of each; what is left \
-         is that of the masses, tyres, sensors and bus together. Of gaps below a floor a share says little.",
+        "A block's share is how much smaller the gap is with that block's measured output in its place; the rest is \
+         the share of masses, tyres, sensors and bus together. Below a floor a share says little.",
     )
 }
 

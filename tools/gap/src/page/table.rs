@@ -147,7 +147,7 @@ pub(super) fn together(diagnosis: &Diagnosis) -> String {
         "<h2>How far the gap shrinks on {}</h2>\
          <table><thead><tr><th>in the simulator</th><th>one step ahead</th><th>5 s ahead</th><th>whole runs</th></tr></thead><tbody>\
          <tr><td>no effect</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td><td class=\"number\">0 %</td></tr>{}{}</tbody></table>\
-         <p class=\"small\">1 less the gap after over the gap before; 90 % intervals by bootstrap.{held}</p>",
+         <p class=\"small\">Shrink is 1 - after / before, of the gap; 90 % intervals by bootstrap.{held}</p>",
         judged_on(&together.held_out_runs),
         row(&together.effects.join(" + "), &together.shrink),
         row("a free model of the errors, without physics", &together.black_box)

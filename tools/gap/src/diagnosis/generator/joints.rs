@@ -6,11 +6,11 @@
 //! measured; the torque it then lets stand must still be the one that this motion takes.
 
 use xt28_machine::Machine;
-use xt28_sim::Steering;
+use xt28_sim::{Effects, Steering};
 
 use super::controllers::steer_opening_asked;
 use super::current_step::{STEER_STEP, within_step};
-use super::scrub::scrub_nm;
+use super::scrub::scrubs_nm;
 use crate::diagnosis::belief::EffectSchedule;
 use crate::diagnosis::floor::Signal;
 use crate::diagnosis::signals::{DT_S, Samples, Signals, moving_mean};
@@ -66,7 +66,6 @@ pub(super) fn joint_errors(
     let half_play = 0.5 * effects.steering.backlash.width_rad;
     let reach = machine.articulation.torque_max_nm / stiffness_nm + half_play;
     let openings = finer_openings(signals, machine, schedule, joint);
-    let scrub = scrub_nm(signals, machine, effects, joint);
     let mut oil_rad = angle.first().copied().unwrap_or_default();
     // Within the play nothing is held: where the joint is then is the ground's matter, and a play that
     // is wide enough would explain anything. So that time counts as an ordinary error, also where it
@@ -76,27 +75,29 @@ pub(super) fn joint_errors(
     // Until the first turn of a run a joint stands as it would without a play, and costs no more.
     let untouched = untouched(angle, &signals.steer_opening[joint]);
     let mut let_go_rad_s = vec![0.0; signals.len];
-    let error: Samples = (0..signals.len)
+    let mut error: Samples = (0..signals.len)
         .map(|i| {
             let rate = steering.open(&mut state, openings[i], DT_S);
             let led_rad = oil_rad + rate * DT_S;
             oil_rad = led_rad.clamp(angle[i] - reach, angle[i] + reach);
-            let taken_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i] + scrub[i];
-            if taken_nm.abs() < SURELY_LESS * machine.articulation.torque_max_nm {
-                let_go_rad_s[i] = (led_rad - oil_rad) / DT_S;
-            }
+            let_go_rad_s[i] = (led_rad - oil_rad) / DT_S;
             let gap = oil_rad - angle[i];
             let twist = gap - gap.clamp(-half_play, half_play);
-            if i < untouched {
-                return gap - taken_nm / stiffness_nm;
-            }
-            is_free[i] = half_play > 0.0 && twist == 0.0;
-            if is_free[i] {
-                return 0.0;
-            }
-            twist - taken_nm / stiffness_nm
+            is_free[i] = i >= untouched && half_play > 0.0 && twist == 0.0;
+            let damped_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i];
+            (if i < untouched { gap } else { twist }) - damped_nm / stiffness_nm
         })
         .collect();
+    let scrub_nm =
+        scrub_of_make(signals, machine, effects, joint, (&error, &is_free, stiffness_nm));
+    for i in 0..signals.len {
+        let damped_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i];
+        let taken_nm = damped_nm + scrub_nm[i];
+        if taken_nm.abs() >= SURELY_LESS * machine.articulation.torque_max_nm {
+            let_go_rad_s[i] = 0.0;
+        }
+        error[i] = if is_free[i] { 0.0 } else { error[i] - scrub_nm[i] / stiffness_nm };
+    }
     let mut slow_rad = moving_mean(&error, SLOW_S);
     let mut fast_rad: Samples = error.iter().zip(&slow_rad).map(|(all, slow)| all - slow).collect();
     for i in (0..signals.len).filter(|&i| is_free[i]) {
@@ -104,6 +105,27 @@ pub(super) fn joint_errors(
         fast_rad[i] = excused * ORDINARY[1] * Signal::JointFast.floor().sigma;
     }
     JointErrors { slow_rad, fast_rad, relief_rad_s: moving_mean(&let_go_rad_s, SLOW_S) }
+}
+
+/// What the tyres take of a joint: of firm ones, or of ones of a make that creep, or in between, as leaves least of
+/// `error`, which is without it.
+fn scrub_of_make(
+    signals: &Signals,
+    machine: &Machine,
+    effects: &Effects,
+    joint: usize,
+    (error, is_free, stiffness_nm): (&[f64], &[bool], f64),
+) -> Samples {
+    let [mut firm, creeping] = scrubs_nm(signals, machine, effects, joint);
+    let (mut product, mut square) = (0.0, f64::MIN_POSITIVE);
+    for i in (0..signals.len).filter(|&i| !is_free[i]) {
+        let more_nm = creeping[i] - firm[i];
+        product += more_nm * (error[i] * stiffness_nm - firm[i]);
+        square += more_nm * more_nm;
+    }
+    let share = (product / square).clamp(0.0, 1.0);
+    firm.iter_mut().zip(&creeping).for_each(|(nm, creeping)| *nm += share * (creeping - *nm));
+    firm
 }
 
 /// The first instant at which a joint has been turned, by its valve or by the ground.
@@ -132,7 +154,6 @@ fn finer_openings(
 #[cfg(test)]
 mod tests {
     use xt28_machine::Wheel;
-    use xt28_sim::Effects;
 
     use super::super::still::still;
     use super::*;

@@ -11,7 +11,7 @@ use xt28_machine::{GRAVITY_M_S2, Machine};
 use xt28_sim::Effects;
 
 use super::axles::Axles;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Make, Samples, Signals};
 
 /// Share of the middle axle's grip at which the tyres slide, against each joint. Below one: the
 /// wheels of an axle slide also against their own drive (seen on the nominal logs of a second plant:
@@ -22,19 +22,33 @@ const SLIDES_M: f64 = 0.009;
 /// Rolling in which a deflection is let go, m (from the same logs).
 const RELAXATION_M: f64 = 1.2;
 
-/// Torque that the front (0) or rear (1) joint needs against the tyres, Nm; left > 0. By how much tyres grip, that
-/// differs from make to make; joints hear of slippery ground by how it creeps alone (docs/diagnosis-log.md, items 9
-/// and 127).
+/// How fast the tyres of sound machines creep, m/s/N: from not at all to 8 mm/s for every kN, as the make has it
+/// (nominal logs of the third make, docs/diagnosis-log.md, item 128).
+const MAKE_CREEPS_M_S_N: f64 = 8.0e-6;
+
+/// Torque that the front (0) or rear (1) joint needs against the tyres, Nm; left > 0: as effects say, and on tyres of
+/// a make that creeps as fast as sound ones do. By how much tyres grip, that differs from make to make; joints hear of
+/// slippery ground by how it creeps alone (docs/diagnosis-log.md, items 9 and 127).
 #[must_use]
-pub(super) fn scrub_nm(
+pub(super) fn scrubs_nm(
     signals: &Signals,
     machine: &Machine,
     effects: &Effects,
     joint: usize,
-) -> Samples {
+) -> [Samples; 2] {
     let most_nm = most_nm(machine)[joint];
-    let scrubs = scrubs(signals, machine, effects);
-    scrubs.iter().map(|[deflection, _]| most_nm * deflection).collect()
+    [Make::Firm, Make::Creeping].map(|make| {
+        let scrubs = scrubs(signals, machine, effects, make);
+        scrubs.iter().map(|[deflection, _]| most_nm * deflection).collect()
+    })
+}
+
+/// How much faster than by the ground alone tyres of a make creep, m/s/N.
+const fn creeps_m_s_n(make: Make) -> f64 {
+    match make {
+        Make::Firm => 0.0,
+        Make::Creeping => MAKE_CREEPS_M_S_N,
+    }
 }
 
 /// Torque that each wheel needs against the same tyres, Nm, forward > 0.
@@ -44,7 +58,7 @@ pub(super) fn scrub_nm(
 #[must_use]
 pub(super) fn scrub_drag_nm(signals: &Signals, machine: &Machine, effects: &Effects) -> Samples {
     let wheel_nm = grip(effects) * most_n(machine) * machine.wheels.radius_m / 6.0;
-    scrubs(signals, machine, effects)
+    scrubs(signals, machine, effects, Make::Firm)
         .iter()
         .map(|[deflection, ahead]| wheel_nm * deflection * ahead)
         .collect()
@@ -71,12 +85,20 @@ fn grip(effects: &Effects) -> f64 {
 
 /// Deflection along the pattern as a share of the one at which the tyres slide, -1 to 1, and slip along
 /// the pattern for each metre that the machine goes ahead with joints that stand; sample by sample.
-fn scrubs<'a>(signals: &'a Signals, machine: &Machine, effects: &Effects) -> Cow<'a, [[f64; 2]]> {
-    let lets_go_per_s = lets_go_per_s(machine, effects);
-    if lets_go_per_s > 0.0 {
-        return deflections(signals, machine, lets_go_per_s).into();
+fn scrubs<'a>(
+    signals: &'a Signals,
+    machine: &Machine,
+    effects: &Effects,
+    make: Make,
+) -> Cow<'a, [[f64; 2]]> {
+    let deflections = || {
+        let lets_go_per_s = lets_go_per_s(machine, effects, creeps_m_s_n(make));
+        deflections(signals, machine, lets_go_per_s)
+    };
+    if effects.wheels.iter().any(|(_, e)| e.slippery_ground.creep_m_s_n > 0.0) {
+        return deflections().into();
     }
-    signals.scrubs(|| deflections(signals, machine, 0.0)).into()
+    signals.scrubs(make, deflections).into()
 }
 
 /// The same of tyres that let go of `lets_go_per_s` of their deflection while they stand.
@@ -98,10 +120,10 @@ fn deflections(signals: &Signals, machine: &Machine, lets_go_per_s: f64) -> Vec<
 
 /// How fast tyres that creep let go of what they are deflected by: as stiff as they slide late, they give way in
 /// proportion to their force, the axles each by its part of the pattern. A wheel that does not creep holds its axle.
-fn lets_go_per_s(machine: &Machine, effects: &Effects) -> f64 {
+fn lets_go_per_s(machine: &Machine, effects: &Effects, more_m_s_n: f64) -> f64 {
     let mut holds_n_s_m = [0.0; 3];
     for (w, e) in effects.wheels.iter() {
-        holds_n_s_m[w.axle() as usize] += 1.0 / e.slippery_ground.creep_m_s_n;
+        holds_n_s_m[w.axle() as usize] += 1.0 / (e.slippery_ground.creep_m_s_n + more_m_s_n);
     }
     let pattern = Axles::new(machine).pattern();
     let gives_m_s_n = (0..3).map(|k| pattern[k] * pattern[k] / holds_n_s_m[k]).sum::<f64>();
@@ -127,7 +149,7 @@ mod tests {
             for w in Wheel::ALL {
                 effects.wheels[w].slippery_ground.creep_m_s_n = creep_m_s_n;
             }
-            scrub_nm(&s, &machine, &effects, 0)[350].abs()
+            scrubs_nm(&s, &machine, &effects, 0)[0][350].abs()
         };
         let [firm, creeping] = [0.0, 1.0e-4].map(after);
         assert!(firm > 10.0e3 && creeping < 0.1 * firm, "{firm}, where they creep {creeping}");

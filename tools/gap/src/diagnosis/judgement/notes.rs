@@ -168,7 +168,7 @@ impl Findings {
             format!("{best} fits best of all in the catalogue, but is not believed")
         };
         let Objection { times, why, .. } = objection;
-        format!("{best}, because {why}: {times:.1} times the most that a right answer would")
+        format!("{best}, because {why}: {times:.1} times the most that a right answer leaves")
     }
 }
 

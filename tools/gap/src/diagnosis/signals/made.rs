@@ -9,13 +9,22 @@ use crate::diagnosis::instant::Instant;
 use crate::diagnosis::kinematics::Kinematics;
 use crate::diagnosis::wheel_torques::WheelTorques;
 
+/// How tyres are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::diagnosis) enum Make {
+    /// Their feet stay where they are.
+    Firm,
+    /// They creep along the ground in proportion to what they push it with.
+    Creeping,
+}
+
 /// Made of a run's samples when first asked for.
 #[derive(Debug, Default)]
 pub(super) struct Made {
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
     kinematics: OnceLock<Vec<Kinematics>>,
-    scrubs: OnceLock<Vec<[f64; 2]>>,
+    scrubs: [OnceLock<Vec<[f64; 2]>>; 2],
     yaw_rates: OnceLock<Vec<Option<f64>>>,
     wheel_torques: OnceLock<WheelTorques>,
     travels_m_s: OnceLock<Samples>,
@@ -55,12 +64,13 @@ impl Signals {
         self.made.kinematics.get_or_init(first)
     }
 
-    /// How the tyres scrub as joints turn. They need of a machine only its axles, joints and radius.
+    /// How the tyres of a make scrub as joints turn. They need of a machine only its axles, joints and radius.
     pub(in crate::diagnosis) fn scrubs(
         &self,
+        make: Make,
         first: impl FnOnce() -> Vec<[f64; 2]>,
     ) -> &[[f64; 2]] {
-        self.made.scrubs.get_or_init(first)
+        self.made.scrubs[make as usize].get_or_init(first)
     }
 
     /// Rates at which the receiver says that the machine turns, rad/s, at each residual; none where it does not. No

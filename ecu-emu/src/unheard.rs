@@ -3,15 +3,6 @@
 use xt28_ecus::Profile;
 use xt28_sim::effects::Entry;
 
-/// Numbers of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
-/// firmware of 2016 has loops of its own, and valves that follow the cab. (Loss and jitter of frames it
-/// hears of, if only on `CAN_1`, where a service tool tunes it.)
-const OF_THE_PAPERS_ECUS: [(&str, &[&str]); 3] = [
-    ("arm-gain", &["kp_factor", "ki_factor"]),
-    ("steer-gain", &["kp_factor", "ki_factor"]),
-    ("rear-follower-lag", &["time_constant_s", "ratio_factor"]),
-];
-
 /// An effect that the profile of 2016 would pass over in silence.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -36,11 +27,11 @@ impl UnheardEffect {
     }
 }
 
-/// Whether it sets a number of those ECUs.
+/// Whether it sets a number of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
+/// firmware of 2016 has loops of its own, and valves that follow the cab. (Loss and jitter of frames it hears of, if
+/// only on `CAN_1`, where a service tool tunes it.)
 fn is_of_the_papers_ecus(entry: &Entry) -> bool {
-    let sets = |name: &str| entry.values.iter().any(|(parameter, _)| parameter.name == name);
-    let own = OF_THE_PAPERS_ECUS.iter().filter(|(effect, _)| *effect == entry.effect.name);
-    own.flat_map(|(_, numbers)| *numbers).any(|name| sets(name))
+    entry.values.iter().any(|(parameter, _)| entry.effect.is_law_of_an_ecu(parameter))
 }
 
 #[cfg(test)]

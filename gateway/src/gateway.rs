@@ -230,7 +230,7 @@ impl Gateway {
             Pace::Tick => self.sensors.oldest_at(),
         };
         // Loads are in an observation alone, so that the kernel does not miss them.
-        let has_loads = !self.arm_ecu.finds_broken(ArmFault::PressureSensor as u32);
+        let has_loads = !self.arm_ecu.finds_broken(ArmFault::Pressure as u32);
         let whole = self.sensors.complete(now) && has_loads;
         let Some(sensed_at) = sensed_at.filter(|_| whole) else { return };
         let seen = self.observe(now, sensed_at);

@@ -18,16 +18,16 @@ const DRIVE_FAULTS: &[&str] =
 /// Bits of the arm ECU's sensors, whose readings the gateway goes by.
 #[derive(Clone, Copy)]
 pub(crate) enum ArmFault {
-    PositionSensor,
-    PressureSensor,
-    AttitudeSensor,
+    Position,
+    Pressure,
+    Attitude,
 }
 
 /// Bits of those of the drive ECU.
 #[derive(Clone, Copy)]
 pub(crate) enum DriveFault {
-    JointSensor,
-    WheelSpeedSensor,
+    Joint,
+    WheelSpeed,
 }
 
 /// What an ECU says of itself.

@@ -190,10 +190,8 @@ impl Run {
             self.tick(now, &mut out)?;
             tell(now, &mut told, &self.gateway, &self.announcer);
             self.end_if_due(now, args);
-            if self.ending {
-                if self.gateway.is_silent() {
-                    return Ok(());
-                }
+            if self.ending && self.gateway.is_silent() {
+                return Ok(());
             }
             due += TICK;
             // The schedule is absolute; a tick whose successor is due already is not made up for.

@@ -9,16 +9,16 @@ use crate::peer::{ArmFault, DriveFault, Peer};
 /// What is measured, less what an ECU says is none of it: NaN, which the safety kernel lets nothing pass with.
 pub(crate) fn trusted(said: Measured, arm_ecu: &Peer, drive_ecu: &Peer) -> Measured {
     let mut measured = said;
-    if arm_ecu.finds_broken(ArmFault::PositionSensor as u32) {
+    if arm_ecu.finds_broken(ArmFault::Position as u32) {
         measured.stroke_m = Measured::UNKNOWN.stroke_m;
     }
-    if arm_ecu.finds_broken(ArmFault::AttitudeSensor as u32) {
+    if arm_ecu.finds_broken(ArmFault::Attitude as u32) {
         (measured.roll_rad, measured.pitch_rad) = (f64::NAN, f64::NAN);
     }
-    if drive_ecu.finds_broken(DriveFault::JointSensor as u32) {
+    if drive_ecu.finds_broken(DriveFault::Joint as u32) {
         measured.front_angle_rad = f64::NAN;
     }
-    if drive_ecu.finds_broken(DriveFault::WheelSpeedSensor as u32) {
+    if drive_ecu.finds_broken(DriveFault::WheelSpeed as u32) {
         measured.speed_m_s = f64::NAN;
     }
     measured

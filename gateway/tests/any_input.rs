@@ -112,7 +112,7 @@ fn period(bench: &mut Bench, ways: &[Way], order: Option<Order>) {
             bench.gateway.on_frame(now, &Frame::new(frame.id(), &data).unwrap());
         }
     }
-    if now.as_nanos() % 120_000_000 == 0
+    if now.as_nanos().is_multiple_of(120_000_000)
         && let Some(bytes) = way().of(&bench.receiver_bytes(&seen))
     {
         bench.gateway.on_gnss(now, &bytes);

@@ -150,41 +150,6 @@ fn every_failure_stops_the_machine_then_falls_silent() {
     }
 }
 
-/// A wheel that reads too fast, or a machine that is pushed, is none that may be let go.
-#[test]
-fn frames_that_move_nothing_open_no_brake() {
-    let braked = Faults { is_braked: true, ..Faults::default() };
-    let mut bench = Bench::new(gateway(goto(25.0, 0.0, 0.0), true), LATE);
-    bench.faults = braked;
-    bench.vehicle.speed_m_s = 0.3;
-    let neutral = (0..12).filter_map(|_| {
-        bench.tick();
-        bench.vehicle.speed_m_s = 0.3;
-        bench.drive_target().filter(|target| !target.enable)
-    });
-    let braking: Vec<bool> = neutral.map(|target| target.brake).collect();
-    assert!(braking.len() > 8 && braking.iter().all(|brake| *brake), "{braking:?}");
-
-    // Nor does arming, for a policy that wants it closed; nor a stop, before the ECU says that it is.
-    let wants = script("end_s = 60\n[[command]]\nat_s = 0.0\nbrake = true\n");
-    let mut bench = Bench::new(gateway(wants, true), LATE);
-    let closed = |bench: &mut Bench, ticks: usize| {
-        (0..ticks).all(|_| {
-            bench.tick();
-            bench.drive_target().is_none_or(|target| target.brake)
-        })
-    };
-    assert!(closed(&mut bench, 100));
-    assert_eq!(bench.gateway.status().phase, Phase::Armed);
-    bench.gateway.order(Order::EmergencyStop);
-    bench.vehicle.speed_m_s = 0.3;
-    assert!(closed(&mut bench, 1) && bench.drive_target().is_some());
-    for _ in 0..90 {
-        bench.vehicle.speed_m_s = 0.3;
-        assert!(closed(&mut bench, 1));
-    }
-}
-
 /// An ECU may be back before its silence is noticed: what it says of itself must be enough.
 #[test]
 fn an_ecu_that_restarts_within_its_deadline_ends_the_run_all_the_same() {
@@ -247,22 +212,6 @@ fn an_emergency_stop_is_released_by_no_order_to_arm() {
     bench.tick();
     bench.gateway.order(Order::Arm);
     bench.run_until(6.0, |status| status.phase == Phase::Armed);
-}
-
-#[test]
-fn a_brake_asked_for_at_speed_closes_when_the_machine_stands() {
-    let text = "[[command]]\nat_s = 0\nthrottle_percent = 50\n\
-                [[command]]\nat_s = 6\nthrottle_percent = 0\nbrake = true\n\
-                [[command]]\nat_s = 9\n";
-    let mut bench = armed(script(text));
-    let mut fastest_m_s = 0.0_f64;
-    while !bench.drive_target().unwrap().brake {
-        bench.tick();
-        fastest_m_s = fastest_m_s.max(bench.vehicle.speed_m_s);
-        assert!(bench.now.as_secs_f64() < 12.0);
-    }
-    assert!(fastest_m_s > 0.7, "{fastest_m_s}");
-    assert!(bench.vehicle.speed_m_s < 0.15, "{}", bench.vehicle.speed_m_s);
 }
 
 #[test]

@@ -143,6 +143,10 @@ impl Scenario {
             let problem = "operator needs profile = \"2016\": no cab is heard otherwise";
             return refuse(line_of(text, "operator"), problem.to_owned());
         }
+        if self.quirks != Quirks::firmware() && self.profile == Profile::Paper {
+            let problem = "quirks need profile = \"2016\": they are oddities of that firmware";
+            return refuse(line_of(text, "quirks"), problem.to_owned());
+        }
         self.check_effects(text, path)?;
         if let Some((line, problem)) = sense::problem(text, self.duration_s) {
             return refuse(line, problem);
@@ -164,7 +168,13 @@ impl Scenario {
             is_outside.then(|| format!("{key} = {at_s} lies outside {run}"))
         };
         let of_event = |(index, event): (usize, &Event)| {
-            Some((places.event(index, "at_s", text), outside("at_s", event.at_s)?))
+            let at_the_end = || {
+                let problem =
+                    format!("at_s = {} is the end of the run: no tick follows", event.at_s);
+                (event.at_s >= self.duration_s).then_some(problem)
+            };
+            let problem = outside("at_s", event.at_s).or_else(at_the_end)?;
+            Some((places.event(index, "at_s", text), problem))
         };
         let of_fault = |(index, fault): (usize, &SensorFault)| match fault.check() {
             Ok(()) => Some((places.fault(index, "from_s", text), outside("from_s", fault.from_s)?)),
@@ -302,15 +312,22 @@ stands-still = { below_m_s = 0.02 }
         );
         assert_eq!(scenario.cab.unwrap().text, ACTION);
         let unheard = "2016\"\neffect = [{ name = \"steer-gain\", kp_factor = 0.5 }]\n#";
+        let keys = "quirks = { follower_gate_is_a_step = false }\n[terrain.ramp]";
+        let quirky = Scenario::parse(
+            &GOOD.replace("[terrain.ramp]", keys),
+            Path::new("a/ramp.toml"),
+            |_| Err(io::ErrorKind::NotFound.into()),
+        );
         let refusals = [
             (parse(unheard, ACTION), "a/ramp.toml:7: \"steer-gain\" acts in loops"),
             (parse("paper", ACTION), "a/ramp.toml:7: operator needs profile = \"2016\""),
             (parse("2016", "[[action]]\n"), "a/ramp.toml:7: a/cab.toml:1: missing field `at_s`"),
             (parse("2016\"\nquirks = { x = true }\n#", ACTION), "a/ramp.toml:7: no oddity \"x\""),
+            (quirky, "a/ramp.toml:6: quirks need profile = \"2016\""),
             (parse("2015", ACTION), "a/ramp.toml:6: no profile \"2015\"; give paper or 2016"),
         ];
         let absent = Scenario::parse(
-            &GOOD.replace(
+            &GOOD.replace("goto:15,0,0", "hold").replace(
                 "[terrain.ramp]",
                 "profile = \"2016\"\noperator = \"no.toml\"\n[terrain.ramp]",
             ),

@@ -15,18 +15,8 @@ use recording::Recording;
 use row::Row;
 use xt28_sim::effects::{Block, CATALOGUE, Effect, Parameter};
 
-/// Effects and their numbers that are laws of the ECUs, which no plant has.
-const OF_ECUS: [(&str, &str); 6] = [
-    ("arm-gain", "kp_factor"),
-    ("arm-gain", "ki_factor"),
-    ("steer-gain", "kp_factor"),
-    ("steer-gain", "ki_factor"),
-    ("rear-follower-lag", "time_constant_s"),
-    ("rear-follower-lag", "ratio_factor"),
-];
-
 fn beside_the_plant(effect: &Effect, p: &Parameter) -> bool {
-    matches!(effect.block, Block::Sensor | Block::Bus) || OF_ECUS.contains(&(effect.name, p.name))
+    matches!(effect.block, Block::Sensor | Block::Bus) || effect.is_law_of_an_ecu(p)
 }
 
 fn rows() -> Vec<Row> {

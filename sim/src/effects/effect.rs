@@ -87,6 +87,13 @@ pub enum Slot {
     Whole(fn(&mut Effects) -> &mut f64),
 }
 
+/// Effects of the ECUs, and their parameters that are: a slow rear valve shows in the follower, and is the plant's.
+const LAWS_OF_ECUS: [(&str, &[&str]); 3] = [
+    ("arm-gain", &["kp_factor", "ki_factor"]),
+    ("steer-gain", &["kp_factor", "ki_factor"]),
+    ("rear-follower-lag", &["time_constant_s", "ratio_factor"]),
+];
+
 /// A name stands for one effect.
 impl PartialEq for Effect {
     fn eq(&self, other: &Self) -> bool {
@@ -106,6 +113,13 @@ impl Effect {
     #[must_use]
     pub fn has_scope(&self) -> bool {
         self.parameters.iter().any(|p| matches!(p.slot, Slot::PerWheel(_)))
+    }
+
+    /// Whether one of its parameters is a number in the law of an ECU as the paper has them, which no plant has.
+    #[must_use]
+    pub fn is_law_of_an_ecu(&self, parameter: &Parameter) -> bool {
+        let own = LAWS_OF_ECUS.iter().filter(|(effect, _)| *effect == self.name);
+        own.flat_map(|(_, names)| *names).any(|name| *name == parameter.name)
     }
 
     /// The same effect as it is on `machine`: each parameter neutral where the machine file says the same number,

@@ -6,15 +6,6 @@ use xt28_sim::{Effects, Terrain};
 
 use super::{Trace, grounds, lifted_and_landed, trace};
 
-/// What no plant has: laws of the ECUs. What a bus loses and delays is none of the plant's either.
-const OF_ECUS: [(&str, &str); 6] = [
-    ("arm-gain", "kp_factor"),
-    ("arm-gain", "ki_factor"),
-    ("steer-gain", "kp_factor"),
-    ("steer-gain", "ki_factor"),
-    ("rear-follower-lag", "time_constant_s"),
-    ("rear-follower-lag", "ratio_factor"),
-];
 /// A rigid wheel creeps by 1e-8 m/s/N of its own, a thousandth of the tolerance of what the ground adds, and
 /// answers in proportion to what is little beside that.
 const FINE: (&str, f64) = ("creep_m_s_n", 1e-3);
@@ -34,10 +25,11 @@ impl Knob {
     /// no effect replaces.
     pub(crate) fn all() -> Vec<Self> {
         let parameters = |effect: &'static Effect| {
-            let of_plant = |p: &&Parameter| !OF_ECUS.contains(&(effect.name, p.name));
+            let of_plant = |p: &&Parameter| !effect.is_law_of_an_ecu(p);
             let own = effect.parameters.iter().filter(of_plant);
             own.map(move |p| Self::Effect(effect, p)).collect::<Vec<_>>()
         };
+        // What a bus loses and delays is none of the plant's either.
         let of_no_bus = CATALOGUE.iter().filter(|effect| effect.block != Block::Bus);
         let mut all: Vec<Self> = of_no_bus.flat_map(parameters).collect();
         all.extend([

@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn a_number_has_no_more_digits_than_it_is_known_to() {
-        assert_eq!(rounded(4049.252_212_808_549), 4049.3);
+        assert_eq!(rounded(4_049.252_212_808_549), 4_049.3);
         assert_eq!(rounded(-0.001_880_044_629), -0.001_880_0);
         assert_eq!([rounded(0.0), rounded(1.0)], [0.0, 1.0]);
     }

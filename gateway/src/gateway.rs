@@ -267,6 +267,11 @@ impl Gateway {
         }
     }
 
+    /// The brake is on, or is told to be.
+    fn is_braked(&self) -> bool {
+        self.writer.is_braking() || self.drive_ecu.is_braked()
+    }
+
     fn measured(&self) -> Measured {
         let said = self.sensors.measured(self.wheel_radius_m);
         trusted(said, &self.arm_ecu, &self.drive_ecu)
@@ -283,6 +288,7 @@ impl Gateway {
             order,
             request: self.request,
             measured: self.measured(),
+            is_braked: self.is_braked(),
             arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
             drive: self.drive_ecu.link(sent.map(|(_, drive)| drive)),
             stamps: Stamps {
@@ -341,8 +347,7 @@ impl Gateway {
         // Without a joint reading the middle is as good as any: neutral frames steer nothing.
         let joint_rad = measured.front_angle_rad;
         let rest = Command::rest(if joint_rad.is_finite() { joint_rad } else { 0.0 });
-        let is_closed = self.writer.is_braking() || self.drive_ecu.is_braked();
-        let brake = is_closed || standing || since_ns > limits.brake_wait_ns;
+        let brake = self.is_braked() || standing || since_ns > limits.brake_wait_ns;
         self.writer.actuate(&Command { brake, ..rest }, Drive::Neutral, out)
     }
 

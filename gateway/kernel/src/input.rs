@@ -11,6 +11,8 @@ pub struct Input {
     pub request: Option<Command>,
     /// What the sensors say now.
     pub measured: Measured,
+    /// The parking brake is on: arming opens it for nobody who wants it closed.
+    pub is_braked: bool,
     /// The arm ECU.
     pub arm: Link,
     /// The drive ECU.

@@ -2,7 +2,7 @@
 
 use crate::state::{Phase, State};
 use crate::verdict::{Reason, Verdict};
-use crate::{Arms, Command, Input, Limits, Measured, Order, hazard, limit};
+use crate::{Arms, Command, Input, Limits, Order, hazard, limit};
 
 /// What of the request may leave at `now_ns`, and the state after.
 ///
@@ -72,7 +72,7 @@ fn shake_hands(
     let acknowledged = if in_step { acknowledged.saturating_add(1) } else { 0 };
     if in_step && acknowledged >= limits.handshake_steps {
         let armed = State {
-            last: standing(&input.measured),
+            last: standing(input),
             last_ns: now_ns,
             braking_since_ns: None,
             acknowledged_ns: now_ns,
@@ -85,12 +85,12 @@ fn shake_hands(
 }
 
 /// The command that changes nothing: rates start from it, so arming is bumpless.
-const fn standing(measured: &Measured) -> Command {
+const fn standing(input: &Input) -> Command {
     Command {
         throttle: 0.0,
-        front_angle_rad: measured.front_angle_rad,
+        front_angle_rad: input.measured.front_angle_rad,
         arms: Arms::Off,
-        brake: false,
+        brake: input.is_braked,
     }
 }
 

@@ -80,10 +80,11 @@ prop_compose! {
     fn any_input()(
         order in order(), request in proptest::option::of(command(bits().boxed())),
         measured in measured(), arm in link(), drive in link(),
-        stamps in any::<[Option<u64>; 3]>(), (bus_ok, alone) in any::<(bool, bool)>(),
+        stamps in any::<[Option<u64>; 3]>(),
+        (bus_ok, alone, is_braked) in any::<(bool, bool, bool)>(),
     ) -> Input {
         let [sensors_ns, observation_ns, policy_ns] = stamps;
-        Input { order, request, measured, arm, drive, bus_ok, alone,
+        Input { order, request, measured, is_braked, arm, drive, bus_ok, alone,
             stamps: Stamps { sensors_ns, observation_ns, policy_ns } }
     }
 }

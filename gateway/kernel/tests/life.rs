@@ -209,6 +209,19 @@ fn the_brake_waits_for_a_machine_that_moves_but_not_for_ever() {
 }
 
 #[test]
+fn arming_opens_no_brake_that_is_to_stay_closed() {
+    for is_braked in [true, false] {
+        let mut bench = Bench { is_braked, ..Bench::new() };
+        // Pushed, or so a wheel says: one that is open waits.
+        bench.measured.speed_m_s = 0.3;
+        let brake = Command { brake: true, ..coast() };
+        bench.run(Order::Arm, brake);
+        let first = (0..20).find_map(|_| bench.run(Order::None, brake).command()).unwrap();
+        assert_eq!(first.brake, is_braked);
+    }
+}
+
+#[test]
 fn a_wire_that_breaks_moves_no_target() {
     let mut bench = Bench::armed();
     bench.measured.front_angle_rad = -0.35;

@@ -15,6 +15,7 @@ pub(crate) struct Bench {
     pub(crate) now_ns: u64,
     pub(crate) counter: u8,
     pub(crate) measured: Measured,
+    pub(crate) is_braked: bool,
 }
 
 impl Bench {
@@ -26,7 +27,8 @@ impl Bench {
             roll_rad: 0.0,
             pitch_rad: 0.0,
         };
-        Self { limits: LIMITS, state: State::new(), now_ns: 1_000_000_000, counter: 0, measured }
+        let (state, is_braked) = (State::new(), false);
+        Self { limits: LIMITS, state, now_ns: 1_000_000_000, counter: 0, measured, is_braked }
     }
 
     /// Armed, after an order and a whole handshake.
@@ -58,6 +60,7 @@ impl Bench {
             order,
             request: Some(request),
             measured: self.measured,
+            is_braked: self.is_braked,
             arm: link,
             drive: link,
             stamps: Stamps { sensors_ns: fresh, observation_ns: fresh, policy_ns: fresh },

@@ -73,7 +73,7 @@ pub(crate) struct Args {
     pub(crate) stroke_mm: f64,
 
     /// Stop after this long
-    #[arg(long, value_name = "S", value_parser = duration_s)]
+    #[arg(long, value_name = "S", value_parser = duration_s, allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 
     /// Link the receiver's pseudo-terminal to this path

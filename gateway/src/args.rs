@@ -56,11 +56,11 @@ pub(crate) struct Args {
     pub(crate) origin: Geodetic,
 
     /// Order the stop after this many seconds, done or not; it takes another second and a half
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 
     /// Give up when not armed after this many seconds
-    #[arg(long, value_name = "S", value_parser = seconds, default_value = "30")]
+    #[arg(long, value_name = "S", value_parser = seconds, default_value = "30", allow_negative_numbers = true)]
     pub(crate) arm_within: f64,
 
     /// Write every frame sent and received to a candump log; a file that holds something is not written over

@@ -24,7 +24,7 @@ pub(crate) struct Run {
     /// A built-in name (see `xt28 scenarios`) or a TOML file
     scenario: String,
     /// Seed of all noise, instead of the scenario's own
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Machine file (TOML), instead of the scenario's own
     #[arg(long, value_name = "FILE")]

@@ -36,7 +36,11 @@ impl Drive {
         let manoeuvre = Manoeuvre::find(name)
             .ok_or_else(|| format!("there is no drive '{name}'; there are {}", names()))?;
         let out = match &self.out {
-            Some(out) => out.clone(),
+            Some(out) if out.extension().is_some_and(|ending| ending == "toml") => out.clone(),
+            Some(out) => {
+                let problem = "a scenario's file ends in .toml; give --out such a name";
+                return Err(format!("{}: {problem}", out.display()).into());
+            }
             None => unnamed(name)?,
         };
         write_drive(&out, &manoeuvre, "shows what a diagnosis missed")?;

@@ -32,18 +32,20 @@ fn two_interfaces_a_few_microseconds_apart_lose_no_frame() {
 
 #[test]
 fn two_machines_on_two_interfaces_are_told_and_none_is_taken() {
-    let both = |strokes: &str| -> String {
-        let pair = |(us, frame): (u32, String)| {
-            let other = frame.replace("18FE1026#2A002B00", strokes);
-            line(us, "can0", &frame) + &line(us + 300, "can1", &other)
+    let others =
+        [("18FE1025#28", "18FE1025#38"), ("18FE1026#2A", "18FE1026#3A"), ("202B#28", "202B#38")];
+    let both = |differ: usize| -> String {
+        let pair = |(us, frame): (u32, &'static str)| {
+            let other = others[..differ].iter().fold(frame.to_owned(), |f, (a, b)| f.replace(a, b));
+            line(us, "can0", frame) + &line(us + 60, "can1", &other)
         };
-        frames().into_iter().map(|(us, frame)| pair((us, frame.to_owned()))).collect()
+        frames().into_iter().map(pair).collect()
     };
-    let bridged = read(&both("18FE1026#2A002B00")).unwrap();
+    let bridged = read(&both(0)).unwrap();
     // Of the first two nothing tells yet how often the message comes.
     assert_eq!(bridged.series(STROKE).unwrap().len(), 101);
-    let refused = read(&both("18FE1026#2A003B00")).unwrap_err().to_string();
-    let wanted = "a.log:8: PosFront comes on can0 and on can1, and says different things there";
+    let refused = read(&both(3)).unwrap_err().to_string();
+    let wanted = "a.log:6: PosMidRear comes on can0 and on can1, and says different things there";
     assert!(refused.starts_with(wanted) && refused.contains("grep ' can0 '"), "{refused}");
 }
 

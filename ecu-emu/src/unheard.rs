@@ -27,11 +27,13 @@ impl UnheardEffect {
     }
 }
 
-/// Whether it sets a number of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
+/// Whether it changes a number of what only the paper's ECUs have: loops closed on a commanded stroke or joint angle. The
 /// firmware of 2016 has loops of its own, and valves that follow the cab. (Loss and jitter of frames it hears of, if
 /// only on `CAN_1`, where a service tool tunes it.)
 fn is_of_the_papers_ecus(entry: &Entry) -> bool {
-    entry.values.iter().any(|(parameter, _)| entry.effect.is_law_of_an_ecu(parameter))
+    entry.values.iter().any(|(parameter, value)| {
+        *value != parameter.neutral && entry.effect.is_law_of_an_ecu(parameter)
+    })
 }
 
 #[cfg(test)]
@@ -50,6 +52,7 @@ mod tests {
             UnheardEffect::check(Profile::Firmware2016, &overlay.entries).is_ok()
         };
         assert!(check("valve_time_constant_s = 0.3"));
+        assert!(check("time_constant_s = 0.0\nvalve_time_constant_s = 0.3"));
         assert!(!check("time_constant_s = 0.3\nvalve_time_constant_s = 0.3"));
     }
 }

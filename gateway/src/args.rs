@@ -10,7 +10,7 @@ use gateway::{Fix, Geodetic};
 /// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver and the controller where the
 /// policy needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
 /// that time. SIGUSR1 is the order to arm: again after a safety stop, and at all where controllers beyond this
-/// machine may connect. SIGINT, SIGTERM and SIGHUP stop the machine, go silent, then exit. SIGUSR2 is the emergency stop: no
+/// machine may connect. SIGINT and SIGTERM stop the machine, go silent, then exit. SIGUSR2 is the emergency stop: no
 /// order arms after it, only a new run does.
 ///
 /// Exit code: 0 done (or interrupted where there was nothing to be done, as in hold), 1 not done

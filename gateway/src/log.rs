@@ -68,7 +68,8 @@ impl Log {
         match self.ended.recv_timeout(PATIENCE) {
             Ok(Ok(())) if self.is_overrun => Err(slow()),
             Ok(result) => result,
-            Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => Err(slow()),
+            Err(RecvTimeoutError::Timeout) => Err(slow()),
+            Err(RecvTimeoutError::Disconnected) => Err(io::Error::other("its thread is gone")),
         }
     }
 }

@@ -23,12 +23,8 @@ pub(crate) enum ArmFault {
     Attitude,
 }
 
-/// Bits of those of the drive ECU.
-#[derive(Clone, Copy)]
-pub(crate) enum DriveFault {
-    Joint,
-    WheelSpeed,
-}
+/// That of the drive ECU's joint sensors.
+pub(crate) const JOINT_SENSOR: u32 = 0;
 
 /// What an ECU says of itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

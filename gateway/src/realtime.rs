@@ -9,7 +9,7 @@ use gateway::policy::Account;
 use gateway::{
     Gateway, GatewayConfig, Listen, Order, Outcome, Phase, Policy, Reason, Remote, Status,
 };
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 use xt28_terrain::{Terrain, TerrainError, TerrainSpec};
@@ -121,11 +121,10 @@ fn surveyed(path: &Path) -> Result<Terrain, TerrainError> {
     spec.build_map(&spec.build()?)
 }
 
-/// A flag that SIGINT, SIGTERM and a terminal that hangs up raise. Whoever asks twice is not kept waiting, and has the
-/// log to within a tick.
+/// A flag that SIGINT and SIGTERM raise. Whoever asks twice is not kept waiting, and has the log to within a tick.
 fn watch_signals() -> std::io::Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
+    for signal in [SIGINT, SIGTERM] {
         signal_hook::flag::register_conditional_shutdown(signal, 1, Arc::clone(&flag))?;
         signal_hook::flag::register(signal, Arc::clone(&flag))?;
     }

@@ -84,7 +84,7 @@ fn fix_lines(status: &Status, lines: &mut Vec<String>) {
     let counts = &status.counts;
     if let fixes @ 1.. = counts.fixes_without_heading {
         lines.push(format!(
-            "{fixes} fixes came without a heading to 3 degrees; does the receiver see its second antenna?"
+            "{fixes} fixes came without a heading good to 3 degrees; does the receiver see its second antenna?"
         ));
     }
     if let (None, epochs @ 1..) = (status.located, counts.fixes_incomplete) {

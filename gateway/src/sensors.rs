@@ -15,6 +15,8 @@ use crate::Attitude;
 use crate::running::Running;
 
 const M_PER_MM: f64 = 1e-3;
+/// From here on a stroke of 16 bits is one below zero.
+const WRAPS_MM: f64 = 32_768.0;
 const N_PER_DAN: f64 = 10.0;
 /// Loads older than this are lost: four of their periods (assumed).
 const LOADS_GOOD_FOR: Duration = Duration::from_millis(200);
@@ -67,11 +69,11 @@ impl Sensors {
     pub(crate) fn on_frame(&mut self, now: SimTime, frame: &Frame) {
         let taken = match frame.id() {
             PosFront::ID => PosFront::decode(frame).map(|f| {
-                self.stroke_front_m.push(now, [f.fr_mm, f.fl_mm].map(|mm| mm * M_PER_MM));
+                self.stroke_front_m.push(now, [f.fr_mm, f.fl_mm].map(stroke_m));
             }),
             PosMidRear::ID => PosMidRear::decode(frame).map(|f| {
                 let mm = [f.mr_mm, f.ml_mm, f.br_mm, f.bl_mm];
-                self.stroke_rest_m.push(now, mm.map(|mm| mm * M_PER_MM));
+                self.stroke_rest_m.push(now, mm.map(stroke_m));
             }),
             CylLoadFront::ID => CylLoadFront::decode(frame).map(|f| {
                 self.load_front_n.push(now, [f.fr_dan, f.fl_dan].map(|dan| dan * N_PER_DAN));
@@ -163,6 +165,12 @@ impl Sensors {
     }
 }
 
+/// A stroke on the wire as metres. The firmware says one a little below zero in the two's complement of a number that
+/// is read as unsigned (facts 3.2): no cylinder is 32 m long.
+fn stroke_m(mm: f64) -> f64 {
+    (if mm >= WRAPS_MM { mm - 2.0 * WRAPS_MM } else { mm }) * M_PER_MM
+}
+
 /// The firmware sends the front pair and the other four apart.
 const fn six([fr, fl]: [f64; 2], [mr, ml, br, bl]: [f64; 4]) -> PerWheel<f64> {
     PerWheel([fr, fl, mr, ml, br, bl])
@@ -171,6 +179,11 @@ const fn six([fr, fl]: [f64; 2], [mr, ml, br, bl]: [f64; 4]) -> PerWheel<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stroke_a_little_below_zero_is_no_long_one() {
+        assert_eq!([170.0, 0.0, 65_535.0].map(stroke_m), [0.17, 0.0, -0.001]);
+    }
 
     #[test]
     fn wheel_speeds_sent_again_are_no_news() {

@@ -1,7 +1,7 @@
 //! What a gateway says of itself.
 
 use xt28_machine::SimTime;
-use xt28_safety::{Phase, Reason};
+use xt28_safety::{Phase, Reason, Stream};
 
 use crate::epoch::Quality;
 use crate::peer::EcuReport;
@@ -41,7 +41,11 @@ impl Status {
         match reason {
             Reason::ArmEcuNotReady => format!("{reason}; {}", arm()),
             Reason::DriveEcuNotReady => format!("{reason}; {}", drive()),
-            Reason::NotAcknowledged | Reason::HandshakeTimeout => {
+            Reason::NotAcknowledged
+            | Reason::HandshakeTimeout
+            | Reason::MeasurementNotFinite
+            | Reason::MeasurementImplausible
+            | Reason::Stale(Stream::Observation) => {
                 format!("{reason}; {}; {}", arm(), drive())
             }
             _ => reason.to_string(),

@@ -1,10 +1,11 @@
 //! Which readings are gone by: those of sensors that no ECU calls broken.
 //!
-//! A frame goes on coming when its sensor is broken, and reads as one of a machine that stands level.
+//! A frame goes on coming when its sensor is broken, and reads as one of a machine that stands level. The speed is the
+//! mean of six wheels', and says only when the brake may close: one of them is no reason to stop.
 
 use xt28_safety::Measured;
 
-use crate::peer::{ArmFault, DriveFault, Peer};
+use crate::peer::{ArmFault, JOINT_SENSOR, Peer};
 
 /// What is measured, less what an ECU says is none of it: NaN, which the safety kernel lets nothing pass with.
 pub(crate) fn trusted(said: Measured, arm_ecu: &Peer, drive_ecu: &Peer) -> Measured {
@@ -15,11 +16,8 @@ pub(crate) fn trusted(said: Measured, arm_ecu: &Peer, drive_ecu: &Peer) -> Measu
     if arm_ecu.finds_broken(ArmFault::Attitude as u32) {
         (measured.roll_rad, measured.pitch_rad) = (f64::NAN, f64::NAN);
     }
-    if drive_ecu.finds_broken(DriveFault::Joint as u32) {
+    if drive_ecu.finds_broken(JOINT_SENSOR) {
         measured.front_angle_rad = f64::NAN;
-    }
-    if drive_ecu.finds_broken(DriveFault::WheelSpeed as u32) {
-        measured.speed_m_s = f64::NAN;
     }
     measured
 }

@@ -32,8 +32,8 @@ pub(crate) struct Wire {
     start: SystemTime,
     log: Option<Log>,
     departures: Departures,
-    /// Frames that had left when the queue was found full to the brim, and when that was: until another one
-    /// leaves the bus carries nothing, or until it is worth another try.
+    /// Frames that had left when the queue was found full to the brim, and when that was: the bus carries nothing
+    /// then until another frame leaves, or for [`STUCK`].
     stuck: Option<(u64, SimTime)>,
 }
 

@@ -114,11 +114,10 @@ fn every_failure_stops_the_machine_then_falls_silent() {
         (Faults { imu_roll_deg: Some(18.5), ..fine }, 0.02),
         // 0.2 s until loads count as lost, three fixes without an observation, and 25 ms on the way.
         (Faults { loads_silent: true, ..fine }, 0.7),
-        // An ECU finds a sensor broken and sends its last reading on: position, attitude, joint, wheel speed.
+        // An ECU finds a sensor broken and sends its last reading on: position, attitude, joint.
         (Faults { bits: [1 << 0, 0], ..fine }, 0.02),
         (Faults { bits: [1 << 2, 0], ..fine }, 0.02),
         (Faults { bits: [0, 1 << 0], ..fine }, 0.02),
-        (Faults { bits: [0, 1 << 1], ..fine }, 0.02),
         // Pressure: nothing but the observation has it.
         (Faults { bits: [1 << 1, 0], ..fine }, 0.52),
     ];

@@ -42,7 +42,10 @@ pub(crate) fn before_arming(
     if !input.measured.is_finite() {
         return Some(Reason::MeasurementNotFinite);
     }
-    if !input.measured.is_plausible() {
+    // While armed it has to last: a single odd reading holds targets back and is gone again.
+    if !input.measured.is_plausible()
+        && (!state.is_armed() || limits.sensors.missed(Some(state.plausible_ns), now_ns))
+    {
         return Some(Reason::MeasurementImplausible);
     }
     if libm::fabs(input.measured.roll_rad) > limits.roll_max_rad {

@@ -32,6 +32,8 @@ pub struct State {
     pub(crate) braking_since_ns: Option<u64>,
     /// When both ECUs last were in step, ns.
     pub(crate) acknowledged_ns: u64,
+    /// When measured strokes and joint were last where they can be, ns.
+    pub(crate) plausible_ns: u64,
 }
 
 impl State {
@@ -44,6 +46,7 @@ impl State {
             last_ns: 0,
             braking_since_ns: None,
             acknowledged_ns: 0,
+            plausible_ns: 0,
         }
     }
 

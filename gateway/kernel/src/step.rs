@@ -76,6 +76,7 @@ fn shake_hands(
             last_ns: now_ns,
             braking_since_ns: None,
             acknowledged_ns: now_ns,
+            plausible_ns: now_ns,
             ..state.go(Phase::Armed)
         };
         return pass(limits, armed, input, now_ns);
@@ -97,7 +98,8 @@ const fn standing(input: &Input) -> Command {
 fn pass(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Verdict) {
     let acknowledged_ns =
         if hazard::both_in_step(limits, input) { now_ns } else { state.acknowledged_ns };
-    let state = State { acknowledged_ns, ..state };
+    let plausible_ns = if input.measured.is_plausible() { now_ns } else { state.plausible_ns };
+    let state = State { acknowledged_ns, plausible_ns, ..state };
     if let Some(reason) = hazard::while_armed(limits, &state, input, now_ns) {
         return block(state, reason, now_ns);
     }

@@ -84,14 +84,12 @@ fn a_stamp_from_the_future_is_not_fresh() {
 #[test]
 fn each_hazard_blocks_and_stays_blocked_until_re_armed() {
     type Spoil = fn(&mut xt28_safety::Input);
-    let hazards: [(Spoil, Reason); 12] = [
+    let hazards: [(Spoil, Reason); 10] = [
         (|i| i.bus_ok = false, Reason::BusFault),
         (|i| i.alone = false, Reason::NotAlone),
         (|i| i.stamps.observation_ns = None, Reason::Stale(Stream::Observation)),
         (|i| i.stamps.policy_ns = None, Reason::Stale(Stream::Policy)),
         (|i| i.measured.stroke_m[3] = f64::NAN, Reason::MeasurementNotFinite),
-        (|i| i.measured.stroke_m[3] = 65.5, Reason::MeasurementImplausible),
-        (|i| i.measured.front_angle_rad = -0.9, Reason::MeasurementImplausible),
         (|i| i.measured.roll_rad = -19_f64.to_radians(), Reason::Roll),
         (|i| i.measured.pitch_rad = 26_f64.to_radians(), Reason::Pitch),
         (|i| i.arm.ready = false, Reason::ArmEcuNotReady),
@@ -206,6 +204,36 @@ fn the_brake_waits_for_a_machine_that_moves_but_not_for_ever() {
     assert_eq!(bench.run(Order::None, coast()), Verdict::Allow(coast()));
     let ticks = (0..200).take_while(|_| bench.run(Order::None, brake) != Verdict::Allow(brake));
     assert_eq!(ticks.count() as u64 * TICK_NS, LIMITS.brake_wait_ns);
+}
+
+#[test]
+fn what_cannot_be_measured_forbids_arming_and_stops_where_it_lasts() {
+    type Spoil = fn(&mut Bench);
+    for spoil in
+        [(|b| b.measured.stroke_m[3] = 0.7) as Spoil, |b| b.measured.front_angle_rad = -0.9]
+    {
+        let mut bench = Bench::new();
+        spoil(&mut bench);
+        let refused = Verdict::Block(Reason::MeasurementImplausible);
+        assert_eq!(bench.run(Order::Arm, coast()), refused);
+        let mut bench = Bench::armed();
+        let sound = bench.measured;
+        spoil(&mut bench);
+        let lasts = |bench: &mut Bench| {
+            (0..100)
+                .take_while(|_| bench.run(Order::None, coast()) == Verdict::Allow(coast()))
+                .count()
+        };
+        let span = usize::try_from(LIMITS.sensors.span_ns() / TICK_NS).unwrap();
+        assert_eq!(lasts(&mut bench), span);
+        assert_eq!(bench.run(Order::None, coast()), refused);
+        // A glitch is ridden through.
+        let mut bench = Bench::armed();
+        spoil(&mut bench);
+        bench.run(Order::None, coast());
+        bench.measured = sound;
+        assert_eq!(lasts(&mut bench), 100);
+    }
 }
 
 #[test]

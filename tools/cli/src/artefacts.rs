@@ -77,12 +77,10 @@ impl Artefacts {
         let outputs = files.iter().map(|(option, path)| (*option, Some(path)));
         Outputs::new(outputs).ensure_apart(read)?;
         match &self.log {
-            Some(log) if !may_be_replaced(log)? => {
-                let (log, option) = (log.display(), self.log_option);
-                Err(format!(
-                    "{log}: it holds what no run of the bench wrote; give {option} another"
-                )
-                .into())
+            // In its own folder, under its scenario's name, a log is the bench's.
+            Some(log) if self.log_option != OUT && !may_be_replaced(log)? => {
+                let problem = "it is there, and is no log in simulated time; give --record another";
+                Err(format!("{}: {problem}", log.display()).into())
             }
             _ => Ok(()),
         }
@@ -124,21 +122,20 @@ impl Artefacts {
     }
 }
 
-/// Whether a log may be written over: one of the bench is made again in a moment, one of a machine is not. The bench's
-/// begin at zero, where others have the time of day.
+/// Whether a log may be written over: one in simulated time is made again in a moment, one of a machine is not. The
+/// first begins at zero, where others have the time of day.
 fn may_be_replaced(path: &Path) -> Result<bool, Failure> {
+    // What is no file keeps nothing, and a pipe would wait for somebody to write.
+    if !fs::metadata(path).is_ok_and(|there| there.is_file()) {
+        return Ok(true);
+    }
     let mut head = Vec::new();
-    match File::open(path) {
-        Ok(file) if file.metadata()?.is_file() => {
-            file.take(BENCH.len() as u64).read_to_end(&mut head)?
-        }
-        _ => return Ok(true),
-    };
-    Ok(head.is_empty() || head == BENCH)
+    File::open(path)?.take(SIMULATED.len() as u64).read_to_end(&mut head)?;
+    Ok(head.is_empty() || head == SIMULATED)
 }
 
-/// How a log of the bench begins.
-const BENCH: &[u8] = b"(0.";
+/// How a log in simulated time begins.
+const SIMULATED: &[u8] = b"(0.";
 /// What is written beside the log, in this order.
 const ENDINGS: [&str; 2] = ["svg", "json"];
 const OUT: &str = "--out";

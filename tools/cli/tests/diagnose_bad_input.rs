@@ -68,7 +68,7 @@ fn a_log_that_is_too_short_is_refused_with_its_length() {
     let talk = refusal(&[&log]);
     assert!(
         talk.contains(
-            "changed.log: 2.00 s of it have every signal that a diagnosis needs, and it needs 5 s"
+            "changed.log: only 2.00 s of it have every signal, and a diagnosis needs 5 s"
         ),
         "{talk}"
     );
@@ -173,7 +173,7 @@ fn a_message_that_stops_or_begins_late_is_told_and_the_rest_left_out() {
     let (status, talk) = heard(3.0, 7.0);
     assert_eq!(status, Some(2), "{talk}");
     assert!(
-        talk.contains("3.99 s of it have every signal that a diagnosis needs, and it needs 5 s"),
+        talk.contains("only 3.99 s of it have every signal, and a diagnosis needs 5 s"),
         "{talk}"
     );
     // Pressures are read where they are logged, though a diagnosis does without.

@@ -59,7 +59,7 @@ fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
     assert_ne!(fs::read_to_string(&log).unwrap(), OLD);
     let field = path(&folder, "field.log");
     let talk = refusal(&["run", &s, "--record", &field]);
-    assert!(talk.contains("no run of the bench wrote; give --record another"), "{talk}");
+    assert!(talk.contains("is no log in simulated time; give --record another"), "{talk}");
     assert_eq!(fs::read_to_string(&field).unwrap(), FIELD);
 }
 

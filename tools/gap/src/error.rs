@@ -228,7 +228,7 @@ pub enum GapError {
     },
     /// There is too little of a log.
     #[error(
-        "{log}: {duration_s:.2} s of it have every signal that a diagnosis needs, and it needs {least_s:.0} s of one run; leave the log out or record longer"
+        "{log}: only {duration_s:.2} s of it have every signal, and a diagnosis needs {least_s:.0} s of one run; leave the log out or record longer"
     )]
     TooShort {
         /// The log.

@@ -55,7 +55,7 @@ fn a_frame_of_nothing_but_ones_is_no_reading() {
     let blank = |line: &str| {
         tick += i32::from(line.contains("18FE1026"));
         let is_blank = (20..23).contains(&tick);
-        let ones = "18FE1026#FFFFFFFFFFFFFFFF";
+        let ones = "18FE1026#FFFFFFFF";
         (if is_blank { line.replace("18FE1026#2A002B00", ones) } else { line.to_owned() }) + "\n"
     };
     let text: String = log().lines().map(blank).collect();

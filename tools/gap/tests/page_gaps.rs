@@ -56,7 +56,7 @@ fn a_gap_says_how_far_tolerances_went_and_a_share_what_it_is_of() {
     assert!(known.contains("beside the cause or pair that fits best, but held to 2.5 of its own."));
     let unknown = page(Verdict::Unknown);
     assert!(unknown.contains("while no cause is believed, but held to one of its own."));
-    let shares = "Of gaps below a floor a share says little.";
+    let shares = "Below a floor a share says little.";
     assert!(known.contains(shares) && text(&diagnosis(Verdict::Effect)).contains(shares));
     let squares = Diagnosis { share_of: ShareOf::Squares, ..diagnosis(Verdict::Effect) };
     assert!(!text(&squares).contains(shares), "these go beyond floors only");

@@ -12,14 +12,16 @@ use crate::Failure;
 pub(super) struct Input {
     /// As it was named.
     file: String,
-    sha256: String,
+    /// None of what is no file, and may be read but once.
+    sha256: Option<String>,
 }
 
 impl Input {
     pub(super) fn of(path: &Path) -> Result<Self, Failure> {
-        let bytes = std::fs::read(path)
-            .map_err(|error| format!("{}: cannot read it again: {error}", path.display()))?;
-        Ok(Self { file: path.display().to_string(), sha256: sha256(&bytes) })
+        let is_file = std::fs::metadata(path).is_ok_and(|there| there.is_file());
+        let bytes = is_file.then(|| std::fs::read(path)).transpose();
+        let bytes = bytes.map_err(|error| format!("{}: cannot read: {error}", path.display()))?;
+        Ok(Self { file: path.display().to_string(), sha256: bytes.as_deref().map(sha256) })
     }
 }
 

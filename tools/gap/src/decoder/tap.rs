@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use xt28_dbc::{Frame, e2e};
-use xt28_dbc_model::{Message, Signal, ValueError};
+use xt28_dbc_model::{Kind, Message, Signal, ValueError};
 
 use crate::Channel;
 
@@ -63,6 +63,12 @@ impl Tap {
     /// Whether its frames carry an alive counter, so that no two in a row are the same.
     pub(crate) fn counts(&self) -> bool {
         self.message.alive || self.message.signal("Counter").is_some()
+    }
+
+    /// Whether a signal that is read of it has no sign: all ones are the most that it can say.
+    pub(crate) fn has_unsigned(&self) -> bool {
+        let is_unsigned = |reading: &Reading| reading.signal.field.kind == Kind::Unsigned;
+        self.readings.iter().any(is_unsigned)
     }
 
     /// Channels it carries.

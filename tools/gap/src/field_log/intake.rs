@@ -15,6 +15,7 @@ use super::interfaces::{Interfaces, TwoMachines};
 use super::order::{Order, Place};
 use super::stillness::Stillness;
 use super::thinned::is_thinned;
+use crate::decoder::Tap;
 use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
 
 /// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
@@ -55,9 +56,11 @@ struct LongestSpan {
     times: u64,
 }
 
-/// Whether all bits of a whole frame are one, which is how J1939 says of each signal that it is not available.
-fn says_nothing(frame: &Frame) -> bool {
-    frame.data().len() == 8 && frame.data().iter().all(|byte| *byte == 0xFF)
+/// Whether all bits of a whole frame are one, which is how J1939 says of each signal that it is not available. Where
+/// all signals have a sign, that is a little less than nothing.
+fn says_nothing(tap: &Tap, frame: &Frame) -> bool {
+    let is_whole = frame.data().len() >= tap.bytes().max(4);
+    is_whole && tap.has_unsigned() && frame.data().iter().all(|byte| *byte == 0xFF)
 }
 
 impl LongestSpan {
@@ -112,7 +115,7 @@ impl Intake {
             return;
         };
         self.known_frames += 1;
-        if says_nothing(frame) {
+        if says_nothing(tap, frame) {
             self.unavailable.entry(frame.id()).or_insert((line, 0)).1 += 1;
             return;
         }

@@ -91,14 +91,13 @@ fn scrubs<'a>(
     effects: &Effects,
     make: Make,
 ) -> Cow<'a, [[f64; 2]]> {
-    let deflections = || {
-        let lets_go_per_s = lets_go_per_s(machine, effects, creeps_m_s_n(make));
-        deflections(signals, machine, lets_go_per_s)
-    };
+    let lets_go_per_s = lets_go_per_s(machine, effects, creeps_m_s_n(make));
+    let made = || deflections(signals, machine, lets_go_per_s);
     if effects.wheels.iter().any(|(_, e)| e.slippery_ground.creep_m_s_n > 0.0) {
-        return deflections().into();
+        return made().into();
     }
-    signals.scrubs(make, deflections).into()
+    // Of another friction or mass they let go otherwise.
+    signals.scrubs(make, lets_go_per_s, made).map_or_else(|| made().into(), Cow::from)
 }
 
 /// The same of tyres that let go of `lets_go_per_s` of their deflection while they stand.

@@ -24,7 +24,7 @@ pub(super) struct Made {
     instants: OnceLock<Vec<Instant>>,
     antenna_leans_m: OnceLock<Vec<[f64; 2]>>,
     kinematics: OnceLock<Vec<Kinematics>>,
-    scrubs: [OnceLock<Vec<[f64; 2]>>; 2],
+    scrubs: [OnceLock<(f64, Vec<[f64; 2]>)>; 2],
     yaw_rates: OnceLock<Vec<Option<f64>>>,
     wheel_torques: OnceLock<WheelTorques>,
     travels_m_s: OnceLock<Samples>,
@@ -64,13 +64,17 @@ impl Signals {
         self.made.kinematics.get_or_init(first)
     }
 
-    /// How the tyres of a make scrub as joints turn. They need of a machine only its axles, joints and radius.
+    /// How the tyres of a make scrub as joints turn. They need of a machine only its axles, joints and radius, and
+    /// how fast they let go, 1/s: none if what was made is of others.
     pub(in crate::diagnosis) fn scrubs(
         &self,
         make: Make,
+        lets_go_per_s: f64,
         first: impl FnOnce() -> Vec<[f64; 2]>,
-    ) -> &[[f64; 2]] {
-        self.made.scrubs[make as usize].get_or_init(first)
+    ) -> Option<&[[f64; 2]]> {
+        let (of_per_s, scrubs) =
+            self.made.scrubs[make as usize].get_or_init(|| (lets_go_per_s, first()));
+        (*of_per_s == lets_go_per_s).then_some(scrubs)
     }
 
     /// Rates at which the receiver says that the machine turns, rad/s, at each residual; none where it does not. No

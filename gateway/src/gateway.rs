@@ -8,11 +8,11 @@ use xt28_ubx::{Enu, LocalFrame};
 
 use crate::epoch::{Epoch, EpochCollector, Fix, Quality};
 use crate::frames::{self, Drive, FrameWriter};
-use crate::peer::{ArmFault, Peer};
+use crate::peer::Peer;
 use crate::policy::Answer;
 use crate::sensors::Sensors;
 use crate::status::{Status, Tally};
-use crate::trust::trusted;
+use crate::trust::{trusted, trusts_loads};
 use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pace, Policy, Pose};
 
 /// After a stop, neutral frames go on for this long, so that the machine is brought to rest and not
@@ -229,9 +229,7 @@ impl Gateway {
             Pace::Fix => located.map(|located| located.at),
             Pace::Tick => self.sensors.oldest_at(),
         };
-        // Loads are in an observation alone, so that the kernel does not miss them.
-        let has_loads = !self.arm_ecu.finds_broken(ArmFault::Pressure as u32);
-        let whole = self.sensors.complete(now) && has_loads;
+        let whole = self.sensors.complete(now) && trusts_loads(&self.arm_ecu);
         let Some(sensed_at) = sensed_at.filter(|_| whole) else { return };
         let seen = self.observe(now, sensed_at);
         self.stamps.observation_ns = Some(sensed_at.as_nanos());

@@ -16,13 +16,9 @@ const DRIVE_FAULTS: &[&str] =
     &["joint sensor", "wheel speed sensor", "pump pressure sensor", "supply", "engine"];
 
 /// Bits of the arm ECU's sensors, whose readings the gateway goes by.
-#[derive(Clone, Copy)]
-pub(crate) enum ArmFault {
-    Position,
-    Pressure,
-    Attitude,
-}
-
+pub(crate) const POSITION_SENSOR: u32 = 0;
+pub(crate) const PRESSURE_SENSOR: u32 = 1;
+pub(crate) const ATTITUDE_SENSOR: u32 = 2;
 /// That of the drive ECU's joint sensors.
 pub(crate) const JOINT_SENSOR: u32 = 0;
 

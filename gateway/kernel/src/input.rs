@@ -41,8 +41,7 @@ pub enum Order {
     Release,
 }
 
-/// Strokes that a sensor in order can read, m (assumed: the cylinder has 0.5 m, and its sensor some beyond either end;
-/// one below its zero reads as 65.5 m, facts 3.2).
+/// Strokes that a sensor in order can read, m (assumed: the cylinder has 0.5 m, and its sensor some beyond either end).
 const STROKE_M: core::ops::RangeInclusive<f64> = -0.05..=0.60;
 /// The largest joint angle that one can read, either way, rad (assumed: 45 degrees, where frames meet at 25).
 const ANGLE_MAX_RAD: f64 = core::f64::consts::FRAC_PI_4;

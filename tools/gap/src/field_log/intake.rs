@@ -57,7 +57,7 @@ struct LongestSpan {
 }
 
 /// Whether all bits of a whole frame are one, which is how J1939 says of each signal that it is not available. Where
-/// all signals have a sign, that is a little less than nothing.
+/// all signals have a sign, that is a little less than nothing; and a frame of a byte or two may mean it.
 fn says_nothing(tap: &Tap, frame: &Frame) -> bool {
     let is_whole = frame.data().len() >= tap.bytes().max(4);
     is_whole && tap.has_unsigned() && frame.data().iter().all(|byte| *byte == 0xFF)

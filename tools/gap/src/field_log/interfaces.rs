@@ -12,8 +12,8 @@ use xt28_machine::SimTime;
 const FRAMES_MIN: u64 = 50;
 /// So many messages are more than an ECU copies from one of its buses to another, perhaps from another tick.
 const MESSAGES_MIN: usize = 3;
-/// Share of them that the other interface did not say, either way round: a bridge hands on what it hears, some of it
-/// late, but one of the two then says what the other said.
+/// Share of a message's frames that the other interface did not say, either way round: a bridge hands on what it
+/// hears, some of it late, but one of the two then says what the other said.
 const STRANGE_MAX: f64 = 0.2;
 /// Frames that an interface said last, among which one of the other is looked for: 0.16 s of a fast message.
 const RECENT: usize = 16;

@@ -75,6 +75,8 @@ pub(super) fn joint_errors(
     // Until the first turn of a run a joint stands as it would without a play, and costs no more.
     let untouched = untouched(angle, &signals.steer_opening[joint]);
     let mut let_go_rad_s = vec![0.0; signals.len];
+    let damp = |rate_rad_s: &f64| steering.damping_nms() * rate_rad_s;
+    let damped_nm: Samples = signals.joint_rate_rad_s[joint].iter().map(damp).collect();
     let mut error: Samples = (0..signals.len)
         .map(|i| {
             let rate = steering.open(&mut state, openings[i], DT_S);
@@ -84,16 +86,13 @@ pub(super) fn joint_errors(
             let gap = oil_rad - angle[i];
             let twist = gap - gap.clamp(-half_play, half_play);
             is_free[i] = i >= untouched && half_play > 0.0 && twist == 0.0;
-            let damped_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i];
-            (if i < untouched { gap } else { twist }) - damped_nm / stiffness_nm
+            (if i < untouched { gap } else { twist }) - damped_nm[i] / stiffness_nm
         })
         .collect();
     let scrub_nm =
         scrub_of_make(signals, machine, effects, joint, (&error, &is_free, stiffness_nm));
     for i in 0..signals.len {
-        let damped_nm = steering.damping_nms() * signals.joint_rate_rad_s[joint][i];
-        let taken_nm = damped_nm + scrub_nm[i];
-        if taken_nm.abs() >= SURELY_LESS * machine.articulation.torque_max_nm {
+        if (damped_nm[i] + scrub_nm[i]).abs() >= SURELY_LESS * machine.articulation.torque_max_nm {
             let_go_rad_s[i] = 0.0;
         }
         error[i] = if is_free[i] { 0.0 } else { error[i] - scrub_nm[i] / stiffness_nm };

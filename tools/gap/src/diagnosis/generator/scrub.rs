@@ -22,8 +22,8 @@ const SLIDES_M: f64 = 0.009;
 /// Rolling in which a deflection is let go, m (from the same logs).
 const RELAXATION_M: f64 = 1.2;
 
-/// How fast the tyres of sound machines creep, m/s/N: from not at all to 8 mm/s for every kN, as the make has it
-/// (nominal logs of the third make, docs/diagnosis-log.md, item 128).
+/// How fast the tyres of sound machines creep at most, m/s/N (assumed: 8 mm/s for every kN, as those of our own plants
+/// do by make; docs/diagnosis-log.md, item 128).
 const MAKE_CREEPS_M_S_N: f64 = 8.0e-6;
 
 /// Torque that the front (0) or rear (1) joint needs against the tyres, Nm; left > 0: as effects say, and on tyres of

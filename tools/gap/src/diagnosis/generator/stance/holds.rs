@@ -1,5 +1,5 @@
 //! How hard idle motors hold their wheels: each against its own turning, all together against what the
-//! ground's slope pulls and the pumps do not push.
+//! ground's slope pulls and the pumps do not push, and against the machine's inertia.
 //!
 //! An arm that swings at standstill wants its wheel to roll. The machine moves to where the wheels'
 //! holds balance, so that each wheel rolls by its arm's swing less that of all. A hold builds up over
@@ -39,6 +39,8 @@ pub(in crate::diagnosis::generator) struct Held<'a> {
     rims: PerWheel<Rim>,
     /// Torque on all wheels that the ground's slope asks for, step by step, Nm.
     pulled_nm: Samples,
+    /// Torque on all wheels that moves the machine by [`YIELDS_M`] in a step from rest, Nm.
+    inertia_nm: f64,
     /// Rolling resistance as a share of the grip.
     resisting: f64,
 }
@@ -84,6 +86,7 @@ impl<'a> Held<'a> {
             most_nm,
             rims: PerWheel::from_fn(|w| Rim::new(s, machine, parts, w, late_s)),
             pulled_nm: (0..s.len).step_by(SAMPLES_PER_STEP).map(pulled_nm).collect(),
+            inertia_nm: mass_kg * parts.radius_m * YIELDS_M / STEP_S.powi(2),
             resisting: machine.wheels.rolling_resistance / machine.wheels.friction,
         })
     }
@@ -92,12 +95,13 @@ impl<'a> Held<'a> {
     pub(in crate::diagnosis::generator) fn on(&self, creep_m_s_n: f64) -> Holds {
         let (s, none) = (self.s, PerWheel::splat(0.0));
         let (mut held, mut resting, mut swung_m) = (none, COMES_TO_REST, 0.0_f64);
+        let mut backs = 0.0;
         let mut holds = Holds { steps: vec![none], slips_m_s: vec![none] };
         for (k, i) in (0..s.len).step_by(SAMPLES_PER_STEP).enumerate().skip(1) {
             let travels = s.throttle[i] != 0.0 || s.mean_wheel_speed_rad_s(i).abs() > TRAVELS_RAD_S;
             resting = if travels { 0 } else { resting + SAMPLES_PER_STEP };
             if resting <= COMES_TO_REST {
-                (held, swung_m) = (none, 0.0);
+                (held, swung_m, backs) = (none, 0.0, 0.0);
                 holds.push(none, none);
                 continue;
             }
@@ -110,7 +114,12 @@ impl<'a> Held<'a> {
             let pushed_nm: f64 = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
             let by_m_s = creep_m_s_n / self.radius_m;
             let yields = PerWheel::from_fn(|w| 1.0 + by_m_s * weight_nm[w] * STEP_S / YIELDS_M);
-            held = balanced(&wanted, &yields, &weight_nm, pushed_nm - self.pulled_nm[k]);
+            let machine = Pushed {
+                sum_nm: pushed_nm - self.pulled_nm[k],
+                inertia_nm: self.inertia_nm,
+                backs,
+            };
+            (held, backs) = balanced(&wanted, &yields, &weight_nm, &machine);
             // How the wheels were held when they came to rest is not known.
             let known = if swung_m > SWUNG_M { held } else { none };
             // What holds a wheel back from rolling forward drags its foot backward.
@@ -162,19 +171,32 @@ impl Rim {
     }
 }
 
-/// Shares nearest to `wanted`, all less by the same, whose torques come to `sum_nm`. Tyres that creep hold so
-/// many times less as `yields` says.
+/// What moves a machine beside the holds of its wheels.
+struct Pushed {
+    /// Torque on all wheels by which it would move forward, Nm.
+    sum_nm: f64,
+    /// Torque that moves it by one [`YIELDS_M`] more in this step than in the last, Nm.
+    inertia_nm: f64,
+    /// How far it backed in the last step, as a share of [`YIELDS_M`].
+    backs: f64,
+}
+
+/// Shares nearest to `wanted`, all less by what the machine backs in this step, so that their torques balance
+/// what pushes it and its inertia; and how far it backs. Tyres that creep hold so many times less as `yields`
+/// says.
 fn balanced(
     wanted: &PerWheel<f64>,
     yields: &PerWheel<f64>,
     weight_nm: &PerWheel<f64>,
-    sum_nm: f64,
-) -> PerWheel<f64> {
+    machine: &Pushed,
+) -> (PerWheel<f64>, f64) {
     let less = |by: f64| PerWheel::from_fn(|w| ((wanted[w] - by) / yields[w]).clamp(-1.0, 1.0));
-    let excess_nm =
-        |by: f64| less(by).iter().map(|(w, share)| share * weight_nm[w]).sum::<f64>() - sum_nm;
+    let excess_nm = |by: f64| {
+        let held_nm: f64 = less(by).iter().map(|(w, share)| share * weight_nm[w]).sum();
+        held_nm - machine.sum_nm - machine.inertia_nm * (by - machine.backs)
+    };
     let reach = yields.iter().map(|(_, times)| *times).fold(1.0, f64::max)
-        + wanted.iter().map(|(_, share)| share.abs()).fold(0.0, f64::max);
+        + wanted.iter().map(|(_, share)| share.abs()).fold(machine.backs.abs(), f64::max);
     let (mut low, mut high) = (-reach, reach);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -184,7 +206,8 @@ fn balanced(
             high = middle;
         }
     }
-    less(0.5 * (low + high))
+    let by = 0.5 * (low + high);
+    (less(by), by)
 }
 
 #[cfg(test)]
@@ -192,24 +215,26 @@ mod tests {
     use super::*;
 
     const RIGID: PerWheel<f64> = PerWheel([1.0; 6]);
+    /// Nothing pushes, and nothing weighs.
+    const LIGHT: Pushed = Pushed { sum_nm: 0.0, inertia_nm: 0.0, backs: 0.0 };
 
     #[test]
     fn tyres_that_creep_let_go() {
         let wanted = PerWheel([0.9, 0.9, 0.0, 0.0, -0.9, -0.9]);
-        let held = balanced(&wanted, &PerWheel::splat(3.0), &PerWheel::splat(4e3), 0.0);
+        let held = balanced(&wanted, &PerWheel::splat(3.0), &PerWheel::splat(4e3), &LIGHT).0;
         assert!((held[Wheel::Fr] - 0.3).abs() < 1e-4 && (held[Wheel::Bl] + 0.3).abs() < 1e-4);
     }
 
     #[test]
     fn wheels_that_want_the_same_move_the_machine_and_are_not_held() {
-        let held = balanced(&PerWheel::splat(3.0), &RIGID, &PerWheel::splat(4e3), 0.0);
+        let held = balanced(&PerWheel::splat(3.0), &RIGID, &PerWheel::splat(4e3), &LIGHT).0;
         assert!(held.iter().all(|(_, share)| share.abs() < 1e-4), "{held:?}");
     }
 
     #[test]
     fn wheels_that_want_to_part_are_held_against_each_other() {
         let wanted = PerWheel([2.0, 2.0, 0.0, 0.0, -2.0, -2.0]);
-        let held = balanced(&wanted, &RIGID, &PerWheel::splat(4e3), 0.0);
+        let held = balanced(&wanted, &RIGID, &PerWheel::splat(4e3), &LIGHT).0;
         assert!(held[Wheel::Fr] > 0.99 && held[Wheel::Bl] < -0.99, "{held:?}");
         assert!(held[Wheel::Mr].abs() < 1e-4, "{held:?}");
     }
@@ -218,6 +243,23 @@ mod tests {
     fn a_wheel_held_alone_moves_the_machine() {
         let weight = PerWheel::from_fn(|w| if w == Wheel::Fr { 4e3 } else { 0.0 });
         let wanted = PerWheel([2.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        assert!(balanced(&wanted, &RIGID, &weight, 0.0)[Wheel::Fr].abs() < 1e-4);
+        assert!(balanced(&wanted, &RIGID, &weight, &LIGHT).0[Wheel::Fr].abs() < 1e-4);
+    }
+
+    #[test]
+    fn a_machine_that_weighs_is_held_by_one_wheel_until_it_moves() {
+        let weight = PerWheel::from_fn(|w| if w == Wheel::Fr { 4e3 } else { 0.0 });
+        let swings = |held: PerWheel<f64>| PerWheel::from_fn(|w| held[w] + 0.2 * weight[w] / 4e3);
+        let (mut held, mut backs) = (PerWheel::splat(0.0), 0.0);
+        let step = |held, backs| {
+            let machine = Pushed { inertia_nm: 4e3, backs, ..LIGHT };
+            balanced(&swings(held), &RIGID, &weight, &machine)
+        };
+        (held, backs) = step(held, backs);
+        assert!((held[Wheel::Fr] - 0.1).abs() < 1e-4 && (backs - 0.1).abs() < 1e-4);
+        for _ in 0..40 {
+            (held, backs) = step(held, backs);
+        }
+        assert!(held[Wheel::Fr].abs() < 1e-2 && (backs - 0.2).abs() < 1e-2, "{held:?} {backs}");
     }
 }

@@ -257,7 +257,7 @@ fn what_was_not_asked_is_not_said_to_be_settled() {
     assert!(page.contains("Which drive would tell causes apart was not asked."));
     assert!(!page.contains("There is no gap"));
     assert!(page.contains("lock-stiffness of each arm ±2 %"), "tolerances of the arms count too");
-    assert!(page.contains("from one instant on that is the same in every run"));
+    assert!(page.contains("or from one instant of the day on, for good"));
 }
 
 #[test]

@@ -49,8 +49,8 @@ struct Start {
     gain: f64,
 }
 
-/// Fits of the hypotheses that may explain something, there always or from late in every run on, the
-/// likeliest first.
+/// Fits of the hypotheses that may explain something, there always, from late in every run on or from
+/// one instant of the day on, the likeliest first.
 #[must_use]
 pub fn search(evidence: &Evidence<'_>, effects: &[&'static Effect]) -> Vec<Fit> {
     let mut starts: Vec<Start> =

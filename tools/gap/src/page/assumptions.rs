@@ -21,8 +21,8 @@ pub(super) fn assumed(diagnosis: &Diagnosis, details: &Details) -> String {
         "The ECUs' laws, gains and filters are those of the paper, unless an effect says otherwise."
             .to_owned(),
         "At most two effects are there at once, each alike on all wheels of one scope.".to_owned(),
-        "An effect is there all along, or from one instant on that is the same in every run, told from each \
-         run's start: none sets in, or goes, in some runs only."
+        "An effect is there all along, from one instant on that is the same in every run, told from each run's \
+         start, or from one instant of the day on, for good: none goes again."
             .to_owned(),
     ];
     // Those have a place of their own.

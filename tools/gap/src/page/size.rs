@@ -27,8 +27,8 @@ fn sides(effect: &Effect, parameter: &str) -> Option<Sides> {
         "x_m" | "longitudinal_m" => ("", ["forward", "back"]),
         "y_m" | "lateral_m" => ("", ["to the left", "to the right"]),
         "z_m" => ("", ["up", "down"]),
-        "grade_x_rad" => ("", ["up forward", "down forward"]),
-        "grade_y_rad" => ("", ["up to the left", "down to the left"]),
+        "grade_x_rad" => ("", ["up to the east", "down to the east"]),
+        "grade_y_rad" => ("", ["up to the north", "down to the north"]),
         "added" => ("coefficient ", ["more", "less"]),
         _ => return None,
     })
@@ -178,7 +178,7 @@ mod tests {
                 "terrain-slope",
                 "grade_x_rad",
                 [0.02, 0.018, 0.022],
-                "1.1 deg up forward (1.0 to 1.3)",
+                "1.1 deg up to the east (1.0 to 1.3)",
             ),
             (
                 "rolling-resistance",

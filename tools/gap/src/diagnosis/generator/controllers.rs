@@ -9,7 +9,7 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Limit of the steering integral, deg s (the machine's conventions).
 pub(in crate::diagnosis) const STEER_WINDUP_DEG_S: f64 = 40.0;
-/// Halvings of a tenth of that, to a sixth of a thousandth of it.
+/// Halvings of a tenth of that, to a fifth of a thousandth of it.
 const HALVINGS: usize = 9;
 
 /// Opening that the steering PI would ask of the front (0) or rear (1) joint less the one asked for.

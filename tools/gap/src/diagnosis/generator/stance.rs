@@ -101,7 +101,8 @@ const UNKNOWN: Error = Error {
     lean_rad: [f64::NAN; 2],
 };
 
-/// When that was read which the stance says of `signal` at `at_s`, s: it is looked at twice a second.
+/// When that was read which the stance says of `signal` at `at_s`, s: it is looked at twice a second, its
+/// sway four times.
 pub(super) fn read_at_s(signal: Signal, at_s: f64) -> f64 {
     match signal {
         Signal::RollSway | Signal::PitchSway => instants::read_at_s(1, at_s),

@@ -15,11 +15,11 @@ use crate::diagnosis::signals::{DT_S, Samples, Signals, median};
 /// Errors of rolling over a run; `NaN` where nothing can be said.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TravelErrors {
-    /// Speed over ground that the front wheels say less the receiver's, m/s.
+    /// Speed over ground of the front axle that all wheels say less the receiver's, m/s.
     pub(super) speed_m_s: Samples,
     /// Course that heading and lever arm say less the receiver's, rad.
     pub(super) course_rad: Samples,
-    /// Each wheel's speed that the others say less its own, rad/s.
+    /// Each wheel's speed that the six together say less its own, rad/s.
     pub(super) wheel_rad_s: PerWheel<Samples>,
 }
 

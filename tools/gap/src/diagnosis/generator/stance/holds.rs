@@ -114,12 +114,12 @@ impl<'a> Held<'a> {
             let pushed_nm: f64 = rims.iter().map(|(_, rim)| rim.pushed_nm[k]).sum();
             let by_m_s = creep_m_s_n / self.radius_m;
             let yields = PerWheel::from_fn(|w| 1.0 + by_m_s * weight_nm[w] * STEP_S / YIELDS_M);
-            let machine = Pushed {
+            let pushed = Pushed {
                 sum_nm: pushed_nm - self.pulled_nm[k],
                 inertia_nm: self.inertia_nm,
                 backs,
             };
-            (held, backs) = balanced(&wanted, &yields, &weight_nm, &machine);
+            (held, backs) = balanced(&wanted, &yields, &weight_nm, &pushed);
             // How the wheels were held when they came to rest is not known.
             let known = if swung_m > SWUNG_M { held } else { none };
             // What holds a wheel back from rolling forward drags its foot backward.
@@ -173,7 +173,7 @@ impl Rim {
 
 /// What moves a machine beside the holds of its wheels.
 struct Pushed {
-    /// Torque on all wheels by which it would move forward, Nm.
+    /// Torque on all wheels that drives it forward, Nm.
     sum_nm: f64,
     /// Torque that moves it by one [`YIELDS_M`] more in this step than in the last, Nm.
     inertia_nm: f64,
@@ -188,15 +188,15 @@ fn balanced(
     wanted: &PerWheel<f64>,
     yields: &PerWheel<f64>,
     weight_nm: &PerWheel<f64>,
-    machine: &Pushed,
+    pushed: &Pushed,
 ) -> (PerWheel<f64>, f64) {
     let less = |by: f64| PerWheel::from_fn(|w| ((wanted[w] - by) / yields[w]).clamp(-1.0, 1.0));
     let excess_nm = |by: f64| {
         let held_nm: f64 = less(by).iter().map(|(w, share)| share * weight_nm[w]).sum();
-        held_nm - machine.sum_nm - machine.inertia_nm * (by - machine.backs)
+        held_nm - pushed.sum_nm - pushed.inertia_nm * (by - pushed.backs)
     };
     let reach = yields.iter().map(|(_, times)| *times).fold(1.0, f64::max)
-        + wanted.iter().map(|(_, share)| share.abs()).fold(machine.backs.abs(), f64::max);
+        + wanted.iter().map(|(_, share)| share.abs()).fold(pushed.backs.abs(), f64::max);
     let (mut low, mut high) = (-reach, reach);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -249,11 +249,10 @@ mod tests {
     #[test]
     fn a_machine_that_weighs_is_held_by_one_wheel_until_it_moves() {
         let weight = PerWheel::from_fn(|w| if w == Wheel::Fr { 4e3 } else { 0.0 });
-        let swings = |held: PerWheel<f64>| PerWheel::from_fn(|w| held[w] + 0.2 * weight[w] / 4e3);
         let (mut held, mut backs) = (PerWheel::splat(0.0), 0.0);
-        let step = |held, backs| {
-            let machine = Pushed { inertia_nm: 4e3, backs, ..LIGHT };
-            balanced(&swings(held), &RIGID, &weight, &machine)
+        let step = |held: PerWheel<f64>, backs| {
+            let swung = PerWheel::from_fn(|w| held[w] + 0.2);
+            balanced(&swung, &RIGID, &weight, &Pushed { inertia_nm: 4e3, backs, ..LIGHT })
         };
         (held, backs) = step(held, backs);
         assert!((held[Wheel::Fr] - 0.1).abs() < 1e-4 && (backs - 0.1).abs() < 1e-4);

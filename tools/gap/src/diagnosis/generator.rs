@@ -230,6 +230,21 @@ impl Generator {
         machine: &Machine,
         schedule: EffectSchedule<'_>,
     ) -> Vec<Residual> {
+        let mut all = self.all_residuals_over(s, machine, schedule);
+        // What a command's place in time is does not hang on what was before.
+        if self != Self::Bus {
+            all.iter_mut().for_each(|residual| unsettled(&mut residual.values, s.settles_s()));
+        }
+        all
+    }
+
+    /// The same from the log's first instant on, where blocks may not have settled.
+    fn all_residuals_over(
+        self,
+        s: &Signals,
+        machine: &Machine,
+        schedule: EffectSchedule<'_>,
+    ) -> Vec<Residual> {
         let effects = schedule.effects;
         let one = |signal: Signal, raw: Samples| Residual {
             generator: self,
@@ -296,6 +311,13 @@ impl Generator {
             }
         }
     }
+}
+
+/// Has nothing said of the first `settles_s` of a run.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn unsettled(values: &mut Samples, settles_s: f64) {
+    let unknown = (settles_s / STEP_S).ceil() as usize;
+    values.iter_mut().take(unknown).for_each(|value| *value = f64::NAN);
 }
 
 /// Means of ten samples, over the floor; `NaN` where one of them is.

@@ -4,6 +4,7 @@ mod command_period;
 mod made;
 mod motors;
 mod receiver;
+mod settling;
 mod smoothed;
 mod uncut;
 

@@ -22,6 +22,7 @@ const FAIR_SHARE: f64 = 0.2;
 pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) -> Vec<String> {
     let mut notes = Vec::new();
     notes.extend(findings.chosen_by_held());
+    notes.extend(begun_underway(inquiry));
     notes.extend(commanded_seldom(inquiry));
     notes.extend(slopes_unseen(inquiry));
     notes.extend(Floors::remark(inquiry.runs.iter().map(|run| &run.signals.floors)));
@@ -41,6 +42,22 @@ pub(super) fn notes(inquiry: &Inquiry, findings: &Findings, verdict: Verdict) ->
         notes.push(findings.why_unknown(&objection));
     }
     notes
+}
+
+/// Runs that begin while the machine moves.
+fn begun_underway(inquiry: &Inquiry) -> Option<String> {
+    let underway = inquiry.runs.iter().filter_map(|run| {
+        let settles_s = run.signals.settles_s();
+        (settles_s > 0.0).then(|| format!("{settles_s:.0} s of {}", run.file()))
+    });
+    let underway: Vec<String> = underway.collect();
+    (!underway.is_empty()).then(|| {
+        let told = underway.join(", ");
+        format!(
+            "the first {told} are not judged: the machine moves as the log begins, and what was before it still \
+             works on; begin logs at rest"
+        )
+    })
 }
 
 /// Runs whose commands come less often than the wire contract has it.

@@ -46,12 +46,14 @@ pub(super) fn instants(s: &Signals, machine: &Machine) -> Vec<Instant> {
     let turned = turned_rad(&motion.turn_rad_s).map(|angle| late(&angle));
     let (doubt, held) = (doubts(s), held_against_arms(s));
     let wheels = PerWheel::from_fn(|w| wheel_samples(s, machine, w));
+    let settles_s = s.settles_s();
     (SAMPLES_PER_INSTANT..s.len)
         .step_by(SAMPLES_PER_INSTANT)
         .map(|i| Instant {
             sample: i,
             is_calm: motion.is_calm[i],
-            is_read: Wheel::ALL.into_iter().all(|w| is_read(s, machine, w, i)),
+            is_read: i as f64 * DT_S >= settles_s
+                && Wheel::ALL.into_iter().all(|w| is_read(s, machine, w, i)),
             rolls_freely: !held[i],
             doubt: doubt[i],
             joint_rad: [joint[0][i], joint[1][i]],

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use xt28_scenarios::{Picture, Recording, Report, RunError, Setup};
 
 use crate::Failure;
-use crate::files::{Outputs, refusal, write};
+use crate::files::{Form, Outputs, refusal, write};
 
 /// Where a run's files go.
 #[derive(Debug)]
@@ -58,10 +58,11 @@ impl Artefacts {
     }
 
     /// The files by the option that each is written for.
-    fn files(&self) -> Vec<(&'static str, PathBuf)> {
-        let log = self.log.iter().cloned().map(|log| (self.log_option, log));
+    fn files(&self) -> Vec<(&'static str, Form, PathBuf)> {
+        let log = self.log.iter().cloned().map(|log| (self.log_option, Form::Any, log));
         let beside = self.folder.iter().flat_map(|folder| {
-            ENDINGS.map(|ending| (OUT, folder.join(format!("{}.{ending}", self.name))))
+            let file = |(ending, form)| (OUT, form, folder.join(format!("{}.{ending}", self.name)));
+            ENDINGS.map(file)
         });
         log.chain(beside).collect()
     }
@@ -74,7 +75,7 @@ impl Artefacts {
     ) -> Result<(), Failure> {
         let files = self.files();
         let read: Vec<&Path> = read.into_iter().collect();
-        let outputs = files.iter().map(|(option, path)| (*option, Some(path)));
+        let outputs = files.iter().map(|(option, form, path)| (*option, *form, Some(path)));
         Outputs::new(outputs).ensure_apart(read)?;
         match &self.log {
             // In its own folder, under its scenario's name, a log is the bench's.
@@ -115,7 +116,7 @@ impl Artefacts {
             findings: &report.findings,
         };
         let texts = [picture.svg(), format!("{:#}\n", report.json())];
-        for (ending, text) in ENDINGS.into_iter().zip(texts) {
+        for ((ending, _), text) in ENDINGS.into_iter().zip(texts) {
             write(&folder.join(format!("{}.{ending}", self.name)), &text)?;
         }
         Ok(())
@@ -137,5 +138,5 @@ fn may_be_replaced(path: &Path) -> Result<bool, Failure> {
 /// How a log in simulated time begins.
 const SIMULATED: &[u8] = b"(0.";
 /// What is written beside the log, in this order.
-const ENDINGS: [&str; 2] = ["svg", "json"];
+const ENDINGS: [(&str, Form); 2] = [("svg", Form::Page), ("json", Form::Json)];
 const OUT: &str = "--out";

@@ -3,7 +3,59 @@
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};
 
+use same_file::is_same_file;
+use serde::de::IgnoredAny;
+
 use crate::Failure;
+
+/// What a file holds once it is written, and all that one there may hold to be replaced by it: an answer given the
+/// name of a log must not cost the log.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form {
+    /// JSON.
+    Json,
+    /// A page or a picture: HTML, SVG.
+    Page,
+    /// TOML.
+    Toml,
+    /// Whatever: who writes it looks for itself.
+    Any,
+}
+
+impl Form {
+    /// Whether `bytes` are of this form, or none.
+    fn reads(self, bytes: &[u8]) -> bool {
+        let Ok(text) = str::from_utf8(bytes) else { return matches!(self, Self::Any) };
+        text.trim().is_empty()
+            || match self {
+                Self::Json => serde_json::from_str::<IgnoredAny>(text).is_ok(),
+                Self::Page => text.trim_start().starts_with('<'),
+                Self::Toml => toml::from_str::<toml::Table>(text).is_ok(),
+                Self::Any => true,
+            }
+    }
+
+    /// Its name.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Json => "JSON",
+            Self::Page => "page or picture",
+            Self::Toml => "TOML",
+            Self::Any => "file",
+        }
+    }
+}
+
+/// Refuses to replace what is there and is no such file as is to be written for `option`.
+pub(crate) fn replaceable(path: &Path, option: &str, form: Form) -> Result<(), Failure> {
+    // What is no file keeps nothing.
+    if !path.is_file() || form.reads(&fs::read(path)?) {
+        return Ok(());
+    }
+    let (path, name) = (path.display(), form.name());
+    Err(format!("{path}: it is there, and is no {name} to be replaced; give {option} another")
+        .into())
+}
 
 /// Refuses files that could not be written. One that is there keeps what it holds, and none is left.
 pub(crate) fn writable<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
@@ -25,8 +77,7 @@ pub(crate) fn no_input<'a>(
     option: &str,
     read: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
-    let Some(own) = place(path) else { return Ok(()) };
-    if read.into_iter().any(|one| place(one).is_some_and(|one| one == own)) {
+    if read.into_iter().any(|one| is_one(path, one)) {
         let path = path.display();
         return Err(format!("{path}: this command reads that file; give {option} another").into());
     }
@@ -35,38 +86,47 @@ pub(crate) fn no_input<'a>(
 
 /// What a command is to write: each file with the option that names it.
 pub(crate) struct Outputs<'a> {
-    files: Vec<(&'static str, &'a Path)>,
+    files: Vec<(&'static str, Form, &'a Path)>,
 }
 
 impl<'a> Outputs<'a> {
     /// Those of `options` that were given.
     pub(crate) fn new(
-        options: impl IntoIterator<Item = (&'static str, Option<&'a PathBuf>)>,
+        options: impl IntoIterator<Item = (&'static str, Form, Option<&'a PathBuf>)>,
     ) -> Self {
-        let given = |(option, path): (_, Option<&'a PathBuf>)| Some((option, path?.as_path()));
+        let given = |(option, form, path): (_, _, Option<&'a PathBuf>)| {
+            Some((option, form, path?.as_path()))
+        };
         Self { files: options.into_iter().filter_map(given).collect() }
     }
 
-    /// Refuses those that the command reads as well, those that are one file under two options, and
-    /// those that could not be written.
+    /// Refuses those that the command reads as well, those that are one file under two options, those that
+    /// would replace something else than they are, and those that could not be written.
     pub(crate) fn ensure_apart<'b>(
         &self,
         read: impl IntoIterator<Item = &'b Path> + Clone,
     ) -> Result<(), Failure> {
-        for (i, (option, path)) in self.files.iter().enumerate() {
+        for (i, (option, form, path)) in self.files.iter().enumerate() {
             no_input(path, option, read.clone())?;
-            let own = place(path);
-            let same = self.files[..i].iter().find(|(_, one)| own.is_some() && place(one) == own);
-            if let Some((other, _)) = same {
+            let same = self.files[..i].iter().find(|(.., one)| is_one(path, one));
+            if let Some((other, ..)) = same {
                 let path = path.display();
                 return Err(format!(
                     "{path}: {other} and {option} would write the same file; give one of them another"
                 )
                 .into());
             }
+            replaceable(path, option, *form)?;
         }
-        writable(self.files.iter().map(|(_, path)| *path))
+        writable(self.files.iter().map(|(.., path)| *path))
     }
+}
+
+/// Whether two names are of one file, whatever they are: links of both kinds, and one that is not there yet.
+fn is_one(path: &Path, other: &Path) -> bool {
+    let own = place(path);
+    let is_there_twice = || path.is_file() && is_same_file(path, other).unwrap_or(false);
+    own.is_some() && (place(other) == own || is_there_twice())
 }
 
 /// Where a file lies, whatever it is called, also one that is not there yet; none for what keeps
@@ -102,7 +162,8 @@ mod tests {
     /// What is said of writing `outputs` beside reading `a.log`.
     fn refused(folder: &Path, outputs: [&str; 2]) -> Option<String> {
         let [one, other] = outputs.map(|name| folder.join(name));
-        let outputs = Outputs::new([("--json", Some(&one)), ("--report", Some(&other))]);
+        let outputs = [("--json", Form::Json, Some(&one)), ("--report", Form::Page, Some(&other))];
+        let outputs = Outputs::new(outputs);
         let read = folder.join("a.log");
         outputs.ensure_apart([read.as_path()]).err().map(|failure| failure.to_string())
     }
@@ -119,6 +180,35 @@ mod tests {
         let both = of(["a.json", "b/../a.json"]).unwrap();
         assert!(both.contains("--json and --report would write the same file"), "{both}");
         assert_eq!(fs::read_to_string(folder.path().join("a.log")).unwrap(), "kept");
+    }
+
+    #[test]
+    fn only_an_earlier_answer_is_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.log"), "kept").unwrap();
+        let refused_over = |holds: &[u8], outputs| {
+            fs::write(folder.path().join("there"), holds).unwrap();
+            refused(folder.path(), outputs)
+        };
+        let as_json = ["there", "a.html"];
+        for kept in [&b"(1.0) can0 0CFF0027#00"[..], &[0x1f, 0x8b, 0xff], b"my notes", b"<html>"] {
+            let why = refused_over(kept, as_json).unwrap();
+            assert!(why.ends_with("is no JSON to be replaced; give --json another"), "{why}");
+        }
+        assert!(refused_over(b"{ \"verdict\": \"none\" }\n", as_json).is_none());
+        assert!(refused_over(b"", as_json).is_none());
+        assert!(refused_over(b"<!doctype html>", ["a.json", "there"]).is_none());
+        assert!(refused_over(b"{}", ["a.json", "there"]).is_some());
+        assert!(Form::Toml.reads(b"[effects]\nx = 1\n") && !Form::Toml.reads(b"my notes"));
+    }
+
+    #[test]
+    fn a_second_name_of_a_file_is_that_file() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.log"), "{}").unwrap();
+        fs::hard_link(folder.path().join("a.log"), folder.path().join("b.json")).unwrap();
+        let why = refused(folder.path(), ["b.json", "a.html"]).unwrap();
+        assert!(why.ends_with("this command reads that file; give --json another"), "{why}");
     }
 
     #[cfg(unix)]

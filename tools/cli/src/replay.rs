@@ -8,7 +8,7 @@ use xt28_machine::Machine;
 use xt28_sim::Solver;
 use xt28_sim::effects::Overlay;
 
-use crate::files::{no_input, writable};
+use crate::files::{Form, no_input, replaceable, writable};
 use crate::ground::Ground;
 use crate::say::say;
 use crate::{Failure, Verdict};
@@ -60,6 +60,7 @@ impl Replay {
             let about = self.log.with_file_name("about.toml");
             let read = files.into_iter().flatten().chain([&self.log, &self.dbc, &about]);
             no_input(plot, "--plot", read.map(PathBuf::as_path))?;
+            replaceable(plot, "--plot", Form::Page)?;
             writable([plot.as_path()])?;
         }
         let mapping =

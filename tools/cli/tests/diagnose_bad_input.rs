@@ -385,4 +385,6 @@ fn no_answer_is_written_over_what_was_asked_about_nor_over_another() {
     assert_kept(&["--json", &out, "--report", &out], files, "would write the same file");
     assert_kept(&["--next", &next, "--overlay", &script], files, "would write the same file");
     assert!(!fs::exists(&out).unwrap() && !fs::exists(&next).unwrap());
+    fs::copy(log(), &out).unwrap();
+    assert_kept(&["--json", &out], files, "is no JSON to be replaced; give --json another");
 }

@@ -91,7 +91,7 @@ fn a_run_writes_over_nothing_that_it_reads() {
 
 #[test]
 fn the_log_is_none_of_the_other_files_of_a_run() {
-    let folder = folder_with(&[("s.toml", SCENARIO), ("s.json", "title")]);
+    let folder = folder_with(&[("s.toml", SCENARIO), ("s.json", "{}")]);
     let (scenario, out) = (path(&folder, "s.toml"), folder.path().to_str().unwrap());
     for name in ["s.json", "s.svg"] {
         let talk = refusal(&["run", &scenario, "--record", &path(&folder, name), "--out", out]);

@@ -10,7 +10,7 @@ use xt28_gap_check::{
     Examination, Examined, Options, Report, Source, Withheld, curve, one_of_each, sweep,
 };
 
-use crate::files::{Outputs, write};
+use crate::files::{Form, Outputs, write};
 use crate::say::say;
 use crate::{Failure, Verdict};
 
@@ -116,9 +116,9 @@ impl Check {
             (None, _) => Source::drawn(wanted.unwrap_or(DRAWN), self.seed),
         };
         let outputs = Outputs::new([
-            ("--json", self.json_file()),
-            ("--json, for its seal,", seal),
-            ("--curve", self.curve.as_ref()),
+            ("--json", Form::Json, self.json_file()),
+            ("--json, for its seal,", Form::Any, seal),
+            ("--curve", Form::Page, self.curve.as_ref()),
         ]);
         let read: Vec<PathBuf> = sources.iter().flat_map(Source::files).collect();
         outputs.ensure_apart(read.iter().map(PathBuf::as_path))?;

@@ -17,7 +17,7 @@ use super::about;
 use super::asked::{Answered, Asked, Input};
 use super::drive::{ensure_free, script_beside, write_drive};
 use super::remarks::{Given, remarks};
-use crate::files::{Outputs, write};
+use crate::files::{Form, Outputs, write};
 use crate::ground::Ground;
 use crate::say::say;
 use crate::{Failure, Verdict};
@@ -125,15 +125,16 @@ impl Diagnose {
         Ok(if diagnosis.verdict == Answer::None { Verdict::Positive } else { Verdict::Negative })
     }
 
-    /// Refuses files to write that this reads, or that are one: an answer must not cost a log.
+    /// Refuses files to write that this reads, that are one, or that hold something else: an answer must not cost a log.
     fn ensure_outputs_apart(&self) -> Result<(), Failure> {
         let script = self.next.as_deref().map(script_beside);
         let outputs = Outputs::new([
-            ("--next", self.next.as_ref()),
-            ("--next, for its script,", script.as_ref()),
-            ("--json", self.json.as_ref()),
-            ("--report", self.report.as_ref()),
-            ("--overlay", self.overlay.as_ref()),
+            ("--next", Form::Toml, self.next.as_ref()),
+            // That one is a script's is looked at where it is written.
+            ("--next, for its script,", Form::Any, script.as_ref()),
+            ("--json", Form::Json, self.json.as_ref()),
+            ("--report", Form::Page, self.report.as_ref()),
+            ("--overlay", Form::Toml, self.overlay.as_ref()),
         ]);
         let files = [&self.mapping, &self.machine, &self.effects, &self.terrain];
         let about = about(&self.logs, self.about.as_ref())?;

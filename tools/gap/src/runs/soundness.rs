@@ -20,8 +20,8 @@ pub(super) fn check(log: &FieldLog, decoder: &Decoder) -> Result<(), GapError> {
         return Err(GapError::Unmeasured { log: log.name().to_owned(), channels });
     }
     if log.duration_s() < LEAST_S {
-        // Cut off, so that a hair less than enough does not read as enough.
-        let (log, duration_s) = (log.name().to_owned(), (1e2 * log.duration_s()).floor() / 1e2);
+        // A hair less than enough must not read as enough.
+        let (log, duration_s) = (log.name().to_owned(), log.duration_s().min(LEAST_S - 0.01));
         return Err(GapError::TooShort { log, duration_s, least_s: LEAST_S });
     }
     for (channel, series) in log.all_series() {

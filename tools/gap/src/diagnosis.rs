@@ -47,9 +47,11 @@ mod wheel_torques;
 
 pub use agreement::{
     AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale, Swap,
-    SwappedChambers, WheelScale, ensure_agreeing, swapped_wheels,
+    SwappedChambers, TurnedValves, WheelScale, ensure_agreeing, swapped_wheels,
 };
-pub(crate) use agreement::{ensure_motions_agreeing, ensure_pressures_agreeing};
+pub(crate) use agreement::{
+    ensure_motions_agreeing, ensure_pressures_agreeing, ensure_valves_agreeing,
+};
 pub use beginning::Beginning;
 pub use belief::{Base, Belief};
 pub use candidate::Candidate;

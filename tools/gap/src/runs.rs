@@ -14,7 +14,8 @@ use xt28_machine::Machine;
 use xt28_sim::Terrain;
 
 use crate::diagnosis::{
-    FieldRun, Inquiry, Signals, ensure_motions_agreeing, ensure_pressures_agreeing, swapped_wheels,
+    FieldRun, Inquiry, Signals, ensure_motions_agreeing, ensure_pressures_agreeing,
+    ensure_valves_agreeing, swapped_wheels,
 };
 use crate::{About, Decoder, FieldLog, GapError};
 
@@ -211,6 +212,7 @@ impl RunSet {
             .collect::<Result<_, GapError>>()?;
         let signals: Vec<Signals> = runs.iter().map(|run| run.signals.clone()).collect();
         ensure_pressures_agreeing(&signals, machine)?;
+        ensure_valves_agreeing(&signals)?;
         // Before attitude is held against strokes: wheels in another order make a machine that leans the other
         // way, and are no fault of the unit that says so.
         match swapped_wheels(&signals, machine) {

@@ -10,6 +10,7 @@ mod load_scale;
 mod side_order;
 mod speed_scale;
 mod stroke_scale;
+mod valve_sense;
 mod wheel_order;
 mod wheel_scale;
 
@@ -33,6 +34,8 @@ pub use speed_scale::SpeedScale;
 use speed_scale::speed_scale;
 pub use stroke_scale::StrokeScale;
 use stroke_scale::stroke_scale;
+pub use valve_sense::TurnedValves;
+use valve_sense::turned_valves;
 pub(super) use wheel_order::axles_alike;
 pub use wheel_order::{Swap, swapped_wheels};
 pub use wheel_scale::WheelScale;
@@ -48,7 +51,14 @@ const COMPARED_EVERY: usize = 10;
 /// [`Disagreement`].
 pub fn ensure_agreeing(runs: &[Signals], machine: &Machine) -> Result<(), Disagreement> {
     ensure_pressures_agreeing(runs, machine)?;
+    ensure_valves_agreeing(runs)?;
     ensure_motions_agreeing(runs, machine)
+}
+
+/// The same of the valves' solenoids, where those of all arms are in each other's place: wheels look swapped then.
+pub(crate) fn ensure_valves_agreeing(runs: &[Signals]) -> Result<(), Disagreement> {
+    let turned = turned_valves(runs).filter(|turned| turned.are_all);
+    turned.map_or(Ok(()), |turned| Err(Disagreement::ValveSense { turned }))
 }
 
 /// The same of what the chambers' pressures say, which take no heed of which wheel's stroke is whose.
@@ -67,6 +77,9 @@ pub(crate) fn ensure_motions_agreeing(
     runs: &[Signals],
     machine: &Machine,
 ) -> Result<(), Disagreement> {
+    if let Some(turned) = turned_valves(runs) {
+        return Err(Disagreement::ValveSense { turned });
+    }
     if let Some(scale) = wheel_scale(runs, machine) {
         return Err(Disagreement::WheelScale { scale });
     }

@@ -24,6 +24,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use xt28_machine::Machine;
 use xt28_sim::Effects;
+use xt28_sim::effects::PumpFlowLimit;
 
 use super::belief::{Base, Belief, Supposed};
 use super::generator::Generator;
@@ -157,7 +158,9 @@ impl<'a> Evidence<'a> {
                 return vec![watch.sums.clone(); onsets.len()];
             }
             let again = || watch.onsets(self.runs, &self.machine, supposed, onsets, false);
-            if generator.wheel().is_none() {
+            // On a pump that runs short an arm gets what the others leave, whatever theirs is then.
+            let is_alone = self.base.effects.pump_flow == PumpFlowLimit::default();
+            if generator.wheel().is_none() || !is_alone {
                 return again();
             }
             let bits = values.iter().map(|value| value.to_bits()).collect();

@@ -10,7 +10,7 @@ use super::signals::Signals;
 ///
 /// A load is what the bore chamber's pressure makes less what the rod chamber's does, so a sensor that reads
 /// too much is told from another load only beside what the rod chamber reads.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gauge {
     bias_n: f64,
     bore: f64,
@@ -41,7 +41,7 @@ impl Gauge {
 }
 
 /// All sensors of one cylinder, as believed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sensing {
     /// Those of its pressures.
     pub(super) gauge: Gauge,

@@ -16,3 +16,30 @@ pub(super) struct Kinematics {
     /// What that gains for each metre a second of the front axle.
     pub(super) by_ahead: PerWheel<f64>,
 }
+
+/// How far a wheel has rolled beside its arm, m, by where the arm has swung it while its frame stood: the arm carries
+/// it over the ground and turns the sensor along. An arm `extends` forward (1) or backward (-1).
+pub(super) fn swung_m(extends: f64, radius_m: f64, pose: &ArmPose) -> f64 {
+    extends * (pose.reach_m - radius_m * pose.angle_rad)
+}
+
+#[cfg(test)]
+mod tests {
+    use xt28_machine::Machine;
+
+    use super::*;
+
+    #[test]
+    fn a_wheel_rolls_beside_an_arm_that_lifts_its_frame() {
+        let machine = Machine::xt28();
+        let (linkage, radius_m) = (machine.linkage(), machine.wheels.radius_m);
+        let [here, after] = [0.2, 0.21].map(|stroke_m| linkage.at_stroke(stroke_m));
+        let carried_m = after.reach_m - here.reach_m;
+        let turned_m = radius_m * (after.angle_rad - here.angle_rad);
+        assert!(turned_m.abs() > 0.5 * carried_m.abs(), "{turned_m} {carried_m}: not a small part");
+        for extends in [1.0, -1.0] {
+            let rolled_m = swung_m(extends, radius_m, &after) - swung_m(extends, radius_m, &here);
+            assert!((rolled_m - extends * (carried_m - turned_m)).abs() < 1e-12);
+        }
+    }
+}

@@ -18,8 +18,8 @@ pub struct Diagnosis {
     pub places: Vec<Place>,
     /// What the places' shares are of.
     pub share_of: ShareOf,
-    /// The signal that the best of the catalogue leaves open, where something unknown is the matter.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// The signal that the best of the catalogue leaves open, where something unknown is the matter; `null` in JSON
+    /// elsewhere.
     pub unexplained: Option<Spot>,
     /// Causes, the likeliest first. Those with a probability above one half are stood by.
     #[serde(serialize_with = "as_told")]
@@ -156,8 +156,7 @@ pub struct Cause {
     pub parameters: Vec<Estimate>,
     /// Names of the effects that these logs cannot tell from this one, itself first.
     pub class: Vec<&'static str>,
-    /// When it began, where not before the logs.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// When it began, where not before the logs; `null` in JSON where before.
     pub begins: Option<Beginning>,
     /// How far the gap shrinks on runs that were not fitted; on all where all were. `null` in JSON where it
     /// was not worked out.

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::{
     AttitudeScale, JointScale, LoadScale, OddHeading, SideOrder, SpeedScale, StrokeScale,
-    SwappedChambers, WheelScale,
+    SwappedChambers, TurnedValves, WheelScale,
 };
 
 /// What does not agree, and what to look at.
@@ -10,7 +10,7 @@ use crate::diagnosis::{
 pub enum Disagreement {
     /// The pressures of a cylinder's chambers are in each other's places.
     #[error(
-        "the chambers of a cylinder look swapped: {swapped}, for so they make the load that the frames tell; mend DBC or mapping"
+        "the chambers of a cylinder look swapped: {swapped}, for so they make the load that the frames tell (or that load has the wrong sign); mend DBC or mapping"
     )]
     ChamberOrder {
         /// Where.
@@ -23,6 +23,14 @@ pub enum Disagreement {
     LoadScale {
         /// Where, and by how much.
         scale: LoadScale,
+    },
+    /// The solenoids of a valve are in each other's places.
+    #[error(
+        "an arm goes out where its valve is to let it in, and in where out: {turned}, or the strokes count the other way; mend DBC or mapping"
+    )]
+    ValveSense {
+        /// Which.
+        turned: TurnedValves,
     },
     /// Wheel speeds are not on the scale of the receiver's ways and the throttle.
     #[error(

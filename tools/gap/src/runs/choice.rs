@@ -29,8 +29,10 @@ pub enum Use {
 impl RunSet {
     /// The runs named in `fit` are fitted on, those in `held` are held out. With one of the two
     /// empty, the rest is for the other; with both empty it is as `about.toml` advises, else the last
-    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by file name (with or without its endings, with its folder where another has the same), by its
-    /// beginning up to its number (`run-3` of `run-3-mixed.log`), by its place among the logs from 1, or by its scenario, which may be several runs.
+    /// third is held out ([`crate::diagnosis::Inquiry::hold_out_what_others_show`] may know better). A run goes by
+    /// file name (with or without its endings, with its folder where another has the same), by its beginning up to
+    /// its number (`run-3` of `run-3-mixed.log`), by its place among the logs from 1, or by its scenario, which may be
+    /// several runs.
     ///
     /// # Errors
     /// [`GapError::NoSuchRun`], [`GapError::AmbiguousRun`], [`GapError::FittedAndHeld`],
@@ -83,12 +85,19 @@ impl RunSet {
         };
         let used = |i: usize| if i < held_from { Use::Fit } else { Use::Held };
         let why = if runs.len() < 2 {
-            "there is only one run"
+            "there is only one run".to_owned()
         } else {
-            "nobody said which: a third is held out, rounded up, the last that show no effect the others do not"
+            let nobody = if runs.iter().any(|run| run.advised.is_some()) {
+                "about.toml has fit = false for all of them"
+            } else {
+                "nobody said which"
+            };
+            format!(
+                "{nobody}: a third is held out, rounded up, the last that show no effect the others do not"
+            )
         };
         let uses = (0..runs.len()).map(used).collect();
-        Choice { uses, why: why.to_owned(), is_advised: false }
+        Choice { uses, why, is_advised: false }
     }
 
     fn file(&self, i: usize) -> &str {

@@ -132,14 +132,16 @@ impl fmt::Display for OddHeading {
         if self.is_mirrored {
             return write!(
                 f,
-                "counts clockwise; in a mapping: scale = -1.0, offset = {offset_deg:.0}"
+                "counts clockwise; in a mapping: scale = -1.0, offset = {offset_deg:.0}, unless east and north of the \
+                 fixes are exchanged in DBC or mapping"
             );
         }
         let (turn, half) = (offset_deg, PI.to_degrees());
         let beside = if (turn.abs() - half).abs() < 1.0 { half } else { turn };
         write!(
             f,
-            "is {beside:.0} deg beside it; in a mapping: offset = {beside:.0}, or, where it counts clockwise from north, scale = -1.0, offset = 90"
+            "is {beside:.0} deg beside it; in a mapping: offset = {beside:.0}, or, where it counts clockwise from north, \
+             scale = -1.0, offset = 90, unless east and north of the fixes are exchanged in DBC or mapping"
         )
     }
 }
@@ -191,7 +193,7 @@ mod tests {
         let compass = |psi: f64| PI / 2.0 - psi;
         let odd = odd_heading(&driven(0.05, compass), &Machine::xt28()).expect("it turned");
         assert!(odd.is_mirrored && (odd.offset_rad - PI / 2.0).abs() < 0.05, "{odd:?}");
-        assert!(odd.to_string().ends_with("scale = -1.0, offset = 90"), "{odd}");
+        assert!(odd.to_string().contains("scale = -1.0, offset = 90, unless"), "{odd}");
         let straight =
             odd_heading(&driven(0.0, compass), &Machine::xt28()).expect("a quarter turn beside");
         assert!(straight.to_string().starts_with("is -90 deg beside it"), "{straight}");

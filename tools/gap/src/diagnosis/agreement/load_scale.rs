@@ -7,7 +7,8 @@ use xt28_machine::{Machine, Wheel};
 
 use crate::diagnosis::signals::{Samples, Signals};
 
-/// Loads below this, as a root mean square, tell no scale, N: a sensor with a bias of 1 MPa makes 8 kN.
+/// Loads below this, as they are told and as pressures make them, tell no scale, root mean squares, N: a sensor with a
+/// bias of 1 MPa makes 8 kN.
 const LOADED_N: f64 = 1.0e4;
 /// How many times more or less than what is told the pressures may make: areas of another machine or a sensor
 /// that is off, not another unit.
@@ -38,13 +39,15 @@ pub(super) fn load_scale(runs: &[Signals], machine: &Machine) -> Option<LoadScal
 /// where it carries nothing.
 #[allow(clippy::cast_precision_loss)]
 fn times(runs: &[Signals], machine: &Machine, wheel: Wheel) -> Option<f64> {
-    let (mut both, mut told, mut count) = (0.0, 0.0, 0_usize);
+    let (mut both, mut told, mut made, mut count) = (0.0, 0.0, 0.0, 0_usize);
     for s in runs {
         for (made_n, load_n) in pressed_n(s, machine, wheel).zip(&s.cylinder_load_n[wheel]) {
-            (both, told, count) = (both + made_n * load_n, told + load_n * load_n, count + 1);
+            (both, told) = (both + made_n * load_n, told + load_n * load_n);
+            (made, count) = (made + made_n * made_n, count + 1);
         }
     }
-    (told > LOADED_N * LOADED_N * count.max(1) as f64).then(|| both / told)
+    let is_loaded = told.max(made) > LOADED_N * LOADED_N * count.max(1) as f64;
+    (is_loaded && told > 0.0).then(|| both / told)
 }
 
 /// What the pressures of `wheel` make, N, sample by sample; nothing where they are not logged.
@@ -101,6 +104,10 @@ mod tests {
         assert_eq!(scale(&front, 0.5), None, "a cylinder of half the area");
         assert_eq!(scale(&front[..1], 0.0), None, "one sensor is dead");
         assert_eq!(scale(&[], 1.0), None);
+        // Loads in tens of newtons look like those of arms that carry nothing.
+        let mut tens = carrying(&[], 1.0);
+        tens[0].cylinder_load_n.0.iter_mut().for_each(|load_n| load_n.fill(3e3));
+        assert_eq!(load_scale(&tens, &machine).expect("a factor of ten").wheels.len(), 6);
     }
 
     #[test]

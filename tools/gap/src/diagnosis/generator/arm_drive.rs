@@ -31,10 +31,8 @@ pub(super) struct ArmDrive<'a> {
     wheel: Wheel,
     arm: Arm,
     sensing: Sensing,
-    /// Sensors before a sample, where they were others.
-    before: Option<(usize, Sensing)>,
-    /// Sample at which the reading of the stroke jumps as its sensor becomes another.
-    jumps: Option<usize>,
+    /// Sensors that were others at first, in order.
+    before: [Option<Before>; 2],
     /// Samples at which the arm becomes another, so that its oil begins anew.
     anew: [Option<usize>; 2],
     /// Samples at which the play of its valve becomes another, so that its spool is still where it was pulled.
@@ -42,6 +40,16 @@ pub(super) struct ArmDrive<'a> {
     loads: Loads,
     area_bore_m2: f64,
     force_max_n: f64,
+}
+
+/// Sensors of before.
+#[derive(Clone, Copy, Debug)]
+struct Before {
+    sensing: Sensing,
+    /// Sample until which they were these.
+    until: usize,
+    /// Whether the reading of the stroke jumps there.
+    jumps: bool,
 }
 
 impl<'a> ArmDrive<'a> {
@@ -59,8 +67,7 @@ impl<'a> ArmDrive<'a> {
             wheel,
             arm: Arm::new(machine, &smooth),
             sensing: Sensing::new(machine.arms.area_bore_m2, &effects.wheels[wheel]),
-            before: None,
-            jumps: None,
+            before: [None; 2],
             anew: [None; 2],
             plays: [None; 2],
             loads: Loads::new(signals, machine, &effects.wheels[wheel], wheel),
@@ -87,10 +94,11 @@ impl<'a> ArmDrive<'a> {
             }
             let [was, is] = [was, is].map(|effects| effects.wheels[self.wheel]);
             let reads = |sensors: &WheelEffects| (sensors.stroke_bias, sensors.stroke_scale);
-            if was != is {
-                self.jumps = (reads(&was) != reads(&is)).then(|| self.jump_about(at));
-                let before = Sensing::new(self.area_bore_m2, &was);
-                self.before = Some((self.jumps.unwrap_or(at), before));
+            let jumps = reads(&was) != reads(&is);
+            let [sensing, next] = [was, is].map(|of| Sensing::new(self.area_bore_m2, &of));
+            if sensing != next {
+                let until = if jumps { self.jump_about(at) } else { at };
+                self.before[k] = Some(Before { sensing, until, jumps });
             }
         }
         self
@@ -107,11 +115,15 @@ impl<'a> ArmDrive<'a> {
     }
 
     /// The sensors at sample `i`.
-    const fn sensing(&self, i: usize) -> &Sensing {
-        match &self.before {
-            Some((from, before)) if i < *from => before,
-            _ => &self.sensing,
-        }
+    fn sensing(&self, i: usize) -> &Sensing {
+        let before = self.before.iter().flatten().find(|before| i < before.until);
+        before.map_or(&self.sensing, |before| &before.sensing)
+    }
+
+    /// The sample about `i` at which the reading of the stroke jumps.
+    fn jump_at(&self, i: usize) -> Option<usize> {
+        let jumps = self.before.iter().flatten().filter(|before| before.jumps);
+        jumps.map(|before| before.until).find(|jump| i.abs_diff(*jump) < JUMPS_OVER)
     }
 
     /// Whether the play of its valve sets in within the run: where its spool then is, is known.
@@ -204,10 +216,7 @@ impl<'a> ArmDrive<'a> {
         let stroke = &self.signals.stroke_m[self.wheel];
         let truth = |i: usize| self.sensing(i).stroke_m(stroke[i]);
         // A jump of the reading that samples share is no motion: the arm goes on as it did.
-        let last = match self.jumps {
-            Some(jump) if i.abs_diff(jump) < JUMPS_OVER => jump.saturating_sub(JUMPS_OVER),
-            _ => i,
-        };
+        let last = self.jump_at(i).map_or(i, |jump| jump.saturating_sub(JUMPS_OVER));
         // Over one sample: what the damper makes of it is smoothed by the filter of the pressures.
         let stroke_rate_m_s = (truth(last) - truth(last.saturating_sub(1))) / DT_S;
         let stroke_m = truth(last) + stroke_rate_m_s * (i - last) as f64 * DT_S;
@@ -335,6 +344,36 @@ mod tests {
             let largest_m = errors_m[100..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
             assert!(largest_m < 1.0e-3, "{from_s}: {largest_m}");
         }
+    }
+
+    /// Of a stroke's sensor that comes loose, and the pressures' that then goes too, each is followed.
+    #[test]
+    fn two_sensors_of_one_arm_go_one_after_the_other() {
+        let (machine, w) = (Machine::xt28(), Wheel::Fl);
+        let (sound, mut loose) = (Effects::default(), Effects::default());
+        loose.wheels[w].stroke_bias.bias_m = -0.012;
+        let mut both = loose.clone();
+        both.wheels[w].pressure_bias.bias_pa = -0.9e6;
+        let mut s = swinging();
+        s.stroke_m[w][400..].iter_mut().for_each(|stroke_m| *stroke_m -= 0.012);
+        let gauge = Gauge::new(machine.arms.area_bore_m2, &both.wheels[w]);
+        let by_n = gauge.reading_n(8.0e4, 0.0) - 8.0e4;
+        let mut seen_n = 0.0;
+        for load_n in &mut s.cylinder_load_n[w][700..] {
+            seen_n = KEPT * seen_n + (1.0 - KEPT) * by_n;
+            *load_n += seen_n;
+        }
+        let base = Base { effects: loose, since: Onset::in_every_run(4.0), before: sound.clone() };
+        let off = base.with(|effects| {
+            let mut off = effects.clone();
+            off.wheels[w].pressure_bias = both.wheels[w].pressure_bias;
+            off
+        });
+        let schedule = base.schedule(off.from(Onset::in_every_run(7.0)), 0.0);
+        let drive = ArmDrive::new(&s, &machine, &both, w).over(schedule);
+        let (errors_m, _) = drive.stroke_errors_m(&[], None);
+        let largest_m = errors_m[100..].iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+        assert!(largest_m < 1.0e-3, "{largest_m}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The whole machine's state as a log and a belief about its sensors have it.
 
 use nalgebra::{Matrix3, Vector3};
-use xt28_machine::{GRAVITY_M_S2, Machine, PerWheel, Wheel};
+use xt28_machine::{ArmPose, GRAVITY_M_S2, Machine, PerWheel, Wheel};
 use xt28_sim::{Effects, Parts, Terrain, VehicleState};
 
 use crate::diagnosis::gauge::{Gauge, rod_n};
@@ -43,12 +43,13 @@ impl<'a> Measured<'a> {
         let circuits = machine.circuits().expect("checked when the machine was read");
         let parts = Parts::new(machine, effects);
         let mut measured = Self { s, machine, effects, parts, circuits, stances: Vec::new() };
-        let (imu, slope) = (&effects.sensors.imu_offset, &effects.slope);
-        let mut near = Stance {
-            z_m: 0.0,
-            pitch_rad: s.pitch_rad[0] - imu.pitch_rad - slope.grade_x_rad,
-            roll_rad: s.roll_rad[0] - imu.roll_rad + slope.grade_y_rad,
-        };
+        let imu = &effects.sensors.imu_offset;
+        let (_, yaw_rad, _) = measured.fix_at(0.0);
+        let stands = axes(s.pitch_rad[0] - imu.pitch_rad, s.roll_rad[0] - imu.roll_rad, yaw_rad);
+        let tilt = measured.parts.tilt;
+        let [pitch_rad, roll_rad] =
+            attitude_rad(&stands.map(|axis| tilt.map_or(axis, |tilt| tilt.to_ground(axis))));
+        let mut near = Stance { z_m: 0.0, pitch_rad, roll_rad };
         for i in (0..s.len).step_by(EVERY) {
             near = measured.stance(i, near);
             measured.stances.push(near);
@@ -175,8 +176,6 @@ impl<'a> Measured<'a> {
             joint_rate_rad_s: [slope(&s.joint_rad[0], i), slope(&s.joint_rad[1], i)],
             pump_pressure_pa: [0, 1, 2, 3].map(|side| s.pump_pressure_pa[side][i]),
             engine_speed_rpm: self.machine.drive.engine_speed_rpm,
-            pitch_rad: stance.pitch_rad + effects.slope.grade_x_rad,
-            roll_rad: stance.roll_rad - effects.slope.grade_y_rad,
             front_rate_rad_s: [-roll_rate, -pitch_rate, 0.0],
             ..VehicleState::default()
         };
@@ -190,7 +189,8 @@ impl<'a> Measured<'a> {
         state
     }
 
-    /// Position, heading and velocity: fixes say where, the front wheels how fast.
+    /// Position, attitude and velocity: fixes say where, the stance on its ground how it leans, the front wheels how
+    /// fast.
     #[allow(clippy::cast_precision_loss)]
     fn place(&self, i: usize, stance: &Stance, state: &mut VehicleState) {
         let s = self.s;
@@ -198,7 +198,10 @@ impl<'a> Measured<'a> {
         let ([antenna_east, antenna_north], yaw, yaw_rate) = self.fix_at(i as f64 * DT_S + late_s);
         let ([ax, ay, az], lever) =
             (self.machine.sensors.gnss_antenna_m, self.effects.sensors.gnss_lever_arm);
-        let [x, y, z] = axes(state.pitch_rad, state.roll_rad, yaw);
+        let on_ground = axes(stance.pitch_rad, stance.roll_rad, yaw);
+        let in_world = on_ground.map(|a| self.parts.tilt.map_or(a, |tilt| tilt.to_world(a)));
+        [state.pitch_rad, state.roll_rad] = attitude_rad(&in_world);
+        let [x, y, z] = in_world;
         let arm = [ax + lever.x_m, ay + lever.y_m, az];
         let lever: [f64; 3] =
             core::array::from_fn(|k| x[k] * arm[0] + y[k] * arm[1] + z[k] * arm[2]);
@@ -232,18 +235,23 @@ impl<'a> Measured<'a> {
         ];
     }
 
-    /// Speed of the front frame along itself: what its wheels roll, less what the arms' swing rolls them.
+    /// Speed of the front frame along itself: what its wheels roll, less what their arms carry them ahead of it.
     fn speed_m_s(&self, i: usize) -> f64 {
         let one = |w: Wheel| {
             let e = &self.effects.wheels[w];
-            let rolls = mean(&self.s.wheel_speed_rad_s[w], i) / e.wheel_speed_scale.factor
-                * self.machine.wheels.radius_m
-                * (1.0 - e.slippery_ground.slip);
             let stroke_m = (self.s.stroke_m[w][i] - e.stroke_bias.bias_m) / e.stroke_scale.factor;
-            let [here, after] = [0.0, 1e-4].map(|by| self.parts.linkage.at_stroke(stroke_m + by));
-            let swing = self.parts.arms[w].extends * (after.reach_m - here.reach_m) / 1e-4
-                * self.s.stroke_rate_m_s[w][i];
-            rolls - swing
+            let rate_m_s = self.s.stroke_rate_m_s[w][i] / e.stroke_scale.factor;
+            let [here, after] =
+                [0.0, 1e-4].map(|by_m| self.parts.linkage.at_stroke(stroke_m + by_m));
+            let by_stroke = |of: fn(&ArmPose) -> f64| {
+                self.parts.arms[w].extends * (of(&after) - of(&here)) / 1e-4 * rate_m_s
+            };
+            // Turned on its arm, which the sensor reads, and with its arm it rolls, as far as its foot does not slip.
+            let turns_rad_s = mean(&self.s.wheel_speed_rad_s[w], i) / e.wheel_speed_scale.factor
+                + by_stroke(|pose| pose.angle_rad);
+            let rolls_m_s =
+                turns_rad_s * self.machine.wheels.radius_m * (1.0 - e.slippery_ground.slip);
+            rolls_m_s - by_stroke(|pose| pose.reach_m)
         };
         0.5 * (one(Wheel::Fr) + one(Wheel::Fl))
     }
@@ -276,6 +284,11 @@ fn axes(pitch_rad: f64, roll_rad: f64, yaw_rad: f64) -> [[f64; 3]; 3] {
     ]
 }
 
+/// How far the nose and the right side of a frame are up that has these axes, rad; [`axes`] the other way round.
+fn attitude_rad([x, y, z]: &[[f64; 3]; 3]) -> [f64; 2] {
+    [x[2].asin(), (-y[2]).atan2(z[2])]
+}
+
 #[allow(clippy::cast_precision_loss)]
 fn mean(samples: &Samples, i: usize) -> f64 {
     let window = &samples[i.saturating_sub(AVERAGED)..(i + AVERAGED + 1).min(samples.len())];
@@ -286,4 +299,68 @@ fn mean(samples: &Samples, i: usize) -> f64 {
 fn slope(samples: &Samples, i: usize) -> f64 {
     let (back, ahead) = (i.saturating_sub(10), (i + 10).min(samples.len() - 1));
     (samples[ahead] - samples[back]) / ((ahead - back).max(1) as f64 * DT_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, PI};
+
+    use super::*;
+    use crate::diagnosis::generator::still;
+
+    /// A machine that stands level on its arms on flat ground, heading so.
+    fn standing(heading_rad: f64) -> Signals {
+        let mut s = still::still(10);
+        for w in Wheel::ALL {
+            s.stroke_m[w].fill(0.2);
+            s.cylinder_load_n[w].fill(60.0e3);
+        }
+        s.headings = vec![[0.0, heading_rad, 0.0], [10.0, heading_rad, 0.0]];
+        s
+    }
+
+    #[test]
+    fn a_slope_that_is_believed_lifts_what_is_uphill() {
+        let machine = Machine::xt28();
+        let mut effects = Effects::default();
+        effects.slope.grade_x_rad = 0.1; // to the east
+        let level = {
+            let s = standing(0.0);
+            Measured::new(&s, &machine, &Effects::default()).at(100)
+        };
+        for (heading_rad, nose_up_rad, right_up_rad) in
+            [(0.0, 0.1, 0.0), (FRAC_PI_2, 0.0, 0.1), (PI, -0.1, 0.0), (-FRAC_PI_2, 0.0, -0.1)]
+        {
+            let s = standing(heading_rad);
+            let state = Measured::new(&s, &machine, &effects).at(100);
+            let leans = [state.pitch_rad - level.pitch_rad, state.roll_rad - level.roll_rad];
+            let off_rad = [leans[0] - nose_up_rad, leans[1] - right_up_rad];
+            assert!(off_rad.iter().all(|off| off.abs() < 2e-3), "{heading_rad}: {leans:?}");
+        }
+    }
+
+    #[test]
+    fn arms_that_swing_under_a_frame_that_stands_give_it_no_speed() {
+        let machine = Machine::xt28();
+        let mut s = standing(0.0);
+        let (linkage, radius_m) = (machine.linkage(), machine.wheels.radius_m);
+        for w in Wheel::ALL {
+            for i in 0..s.len {
+                s.stroke_m[w][i] = 0.2 + 0.05 * (i as f64 * DT_S);
+            }
+            s.stroke_rate_m_s[w].fill(0.05);
+            let forward = if w.axle() as usize == 0 { 1.0 } else { -1.0 };
+            for i in 0..s.len {
+                let [here, after] =
+                    [0.0, 1e-4].map(|by_m| linkage.at_stroke(s.stroke_m[w][i] + by_m));
+                let carried_m_s = (after.reach_m - here.reach_m) / 1e-4 * 0.05;
+                let turns_rad_s = (after.angle_rad - here.angle_rad) / 1e-4 * 0.05;
+                s.wheel_speed_rad_s[w][i] = forward * (carried_m_s / radius_m - turns_rad_s);
+            }
+        }
+        let effects = Effects::default();
+        let state = Measured::new(&s, &machine, &effects).at(200);
+        let ahead_m_s = state.antenna_velocity_m_s[0];
+        assert!(ahead_m_s.abs() < 2e-3, "{ahead_m_s}");
+    }
 }

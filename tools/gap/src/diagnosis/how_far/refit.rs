@@ -6,8 +6,8 @@
 //! (neighbours) give way within their priors, so that a cause need not explain a heavier frame; they
 //! are near enough linear for slopes taken once. What blocks say of a parameter stands beside what the whole
 //! machine does, and its interval, which holds the truth as often as it should, bounds it: what the simulator does
-//! not know of the whole machine draws a play of the joints down by a quarter. What comes out are the causes alone: that is what an
-//! overlay can hold, and what is judged.
+//! not know of the whole machine draws a play of the joints down by a quarter. What comes out are the causes alone:
+//! that is what an overlay can hold, and what is judged.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
@@ -33,6 +33,8 @@ const CORRELATED: f64 = 20.0;
 const ROUNDS: usize = 8;
 /// A round that gains less than this share of the cost is the last.
 const ENOUGH: f64 = 2.0e-3;
+/// What is known of a parameter that the runs do not show, inverse squares of tolerances: it to ten of them, no better.
+const UNSHOWN: f64 = 0.01;
 
 /// Causes fitted anew.
 #[derive(Clone, Debug)]
@@ -347,12 +349,11 @@ fn deviations(
 ) -> Vec<f64> {
     let n = slopes.len();
     let mut bread = matrix.clone();
-    // A parameter that these runs do not show is known to ten tolerances, no better.
     for k in 0..turns.len() {
-        bread[(k, k)] += 0.01;
+        bread[(k, k)] += UNSHOWN;
     }
     let Some(factor) = Cholesky::new(bread) else { return vec![0.0; turns.len()] };
-    let mut meat = DMatrix::<f64>::identity(n, n);
+    let mut meat = DMatrix::<f64>::identity(n, n) * UNSHOWN;
     for (segment, errors) in errors.chunks(BLOCK * WIDTH).enumerate() {
         let from = segment * BLOCK * WIDTH;
         let pull = DVector::from_fn(n, |k, _| {

@@ -14,6 +14,7 @@ use super::instants::pump_torque_nm;
 use super::motion::{lagged, unflickered};
 use crate::diagnosis::generator::grade::{Grade, climbs};
 use crate::diagnosis::generator::press::{normal_n, own_n};
+use crate::diagnosis::kinematics::swung_m;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Rolling over which a hold builds up, m (assumed).
@@ -158,7 +159,7 @@ impl Rim {
         let steps =
             stroke_m.iter().zip(loads_n).step_by(SAMPLES_PER_STEP).map(|(stroke_m, load_n)| {
                 let pose = parts.linkage.at_stroke(*stroke_m);
-                let turned_m = arm.extends * (pose.reach_m - pose.angle_rad * parts.radius_m);
+                let turned_m = swung_m(arm.extends, parts.radius_m, &pose);
                 (turned_m, slips_m * normal_n(own_n, *load_n, &pose))
             });
         let (swing_m, grip_nm) = steps.unzip();

@@ -6,6 +6,7 @@ use xt28_sim::{Effects, Parts};
 
 use crate::diagnosis::generator::axles::Axles;
 use crate::diagnosis::generator::press::{axles_n, own_n};
+use crate::diagnosis::kinematics::swung_m;
 use crate::diagnosis::signals::{DT_S, Samples, Signals};
 
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
@@ -54,8 +55,9 @@ impl Motion {
 fn speeds(s: &Signals, machine: &Machine) -> Samples {
     let parts = Parts::new(machine, &Effects::default());
     let swings = PerWheel::from_fn(|w| {
-        let reach = s.stroke_m[w].iter().map(|stroke| parts.linkage.at_stroke(*stroke).reach_m);
-        slope(&reach.collect())
+        let pose = s.stroke_m[w].iter().map(|stroke| parts.linkage.at_stroke(*stroke));
+        let swung = pose.map(|pose| swung_m(parts.arms[w].extends, parts.radius_m, &pose));
+        slope(&swung.collect())
     });
     let mut last = 0.0;
     let step = |i: usize| {
@@ -63,7 +65,7 @@ fn speeds(s: &Signals, machine: &Machine) -> Samples {
         let (mut sum, mut count) = (0.0, 0.0);
         for w in Wheel::ALL.into_iter().filter(carries) {
             let rolls_m_s = s.wheel_speed_rad_s[w][i] * parts.radius_m;
-            sum += rolls_m_s - parts.arms[w].extends * swings[w][i];
+            sum += rolls_m_s - swings[w][i];
             count += 1.0;
         }
         if count > 0.0 {

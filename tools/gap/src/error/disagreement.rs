@@ -26,7 +26,7 @@ pub enum Disagreement {
     },
     /// The solenoids of a valve are in each other's places.
     #[error(
-        "an arm goes out where its valve is to let it in, and in where out: {turned}, or the strokes count the other way; mend DBC or mapping"
+        "an arm goes out where its valve is to let it in, and in where out: {turned}, or their strokes count the other way; mend DBC or mapping"
     )]
     ValveSense {
         /// Which.

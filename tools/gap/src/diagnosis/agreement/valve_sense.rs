@@ -5,12 +5,13 @@ use core::fmt;
 
 use xt28_machine::Wheel;
 
-use super::COMPARED_EVERY;
 use super::along::Along;
 use crate::diagnosis::signals::Signals;
 
 /// Opening beyond which a valve moves its arm, whatever its dead band and its leaks (assumed).
 const OPENS: f64 = 0.15;
+/// Samples of a log from one that is looked at to the next: an arm's valve is wide open for seconds of a drive.
+const LOOKED_EVERY: usize = 4;
 /// Rate of an arm that hardly moves, m/s.
 const MOVES_M_S: f64 = 0.004;
 
@@ -37,7 +38,7 @@ pub(super) fn turned_valves(runs: &[Signals]) -> Option<TurnedValves> {
 /// nothing where it is hardly asked to go or goes anyhow.
 fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
     let asked = runs.iter().flat_map(|s| {
-        let samples = (0..s.len).step_by(COMPARED_EVERY);
+        let samples = (0..s.len).step_by(LOOKED_EVERY);
         let pairs = samples.map(|i| [s.opening[wheel][i], s.stroke_rate_m_s[wheel][i]]);
         pairs.filter(|[opening, _]| opening.abs() > OPENS)
     });
@@ -48,10 +49,8 @@ fn times(runs: &[Signals], wheel: Wheel) -> Option<f64> {
 
 impl fmt::Display for TurnedValves {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let each = self.wheels.iter().map(|wheel| {
-            format!("retract_current.{wheel} reads what extends and extend_current.{wheel} what retracts")
-        });
-        write!(f, "{}", each.collect::<Vec<_>>().join(", "))
+        let wheels: Vec<String> = self.wheels.iter().map(Wheel::to_string).collect();
+        write!(f, "retract_current and extend_current of {} are exchanged", wheels.join(", "))
     }
 }
 
@@ -80,7 +79,7 @@ mod tests {
         assert_eq!(turned(1.0, 1.0), None);
         let one = turned(-1.0, 1.0).unwrap();
         assert_eq!((&one.wheels[..], one.are_all), (&[Wheel::Fr][..], false));
-        assert!(one.to_string().starts_with("retract_current.FR reads what extends"), "{one}");
+        assert!(one.to_string().ends_with("extend_current of FR are exchanged"), "{one}");
         let all = turned(-1.0, -1.0).unwrap();
         assert_eq!((all.wheels.len(), all.are_all), (6, true));
         assert_eq!(turned(-0.05, 1.0), None, "an arm that creeps goes where its load has it");

@@ -79,6 +79,13 @@ pub enum FaultKind {
         /// Frames in the log, those included.
         of: u64,
     },
+    /// A message says another thing on one interface than on the other; both are taken, as they come.
+    TwoVoiced {
+        /// Message.
+        message: String,
+        /// The interface that it came on first, and the other.
+        interfaces: [String; 2],
+    },
     /// Frames have fewer bytes than the DBC says; they are left out.
     WrongLength {
         /// Message.
@@ -267,6 +274,10 @@ impl fmt::Display for LogFault {
             FaultKind::Repeated { message, frames, of } => write!(
                 f,
                 "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"
+            ),
+            FaultKind::TwoVoiced { message, interfaces: [one, other] } => write!(
+                f,
+                "{message} says one thing on {one} and another on {other}, from here on; both are taken as they come, so leave out the interface of another device"
             ),
             FaultKind::WrongLength { message, found, wanted, frames } => write!(
                 f,

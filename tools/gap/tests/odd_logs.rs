@@ -44,6 +44,11 @@ fn two_machines_on_two_interfaces_are_told_and_none_is_taken() {
     let bridged = read(&both(0)).unwrap();
     // Of the first two nothing tells yet how often the message comes.
     assert_eq!(bridged.series(STROKE).unwrap().len(), 101);
+    // One of them an ECU may have copied from another tick: it is read, and told.
+    let one = read(&both(1)).unwrap();
+    let told: Vec<String> = one.faults().iter().map(ToString::to_string).collect();
+    let says = "PosMidRear says one thing on can0 and another on can1";
+    assert!(told.iter().any(|told| told.contains(says)), "{told:?}");
     let refused = read(&both(3)).unwrap_err().to_string();
     let wanted = "a.log:6: PosMidRear comes on can0 and on can1, and says different things there";
     assert!(refused.starts_with(wanted) && refused.contains("grep ' can0 '"), "{refused}");

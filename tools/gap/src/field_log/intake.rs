@@ -11,7 +11,7 @@ use xt28_machine::SimTime;
 
 use super::FieldLog;
 use super::attendance::Attendance;
-use super::interfaces::{Interfaces, TwoMachines};
+use super::interfaces::{Interfaces, MESSAGES_MIN, TwoVoiced};
 use super::order::{Order, Place};
 use super::stillness::Stillness;
 use super::thinned::is_thinned;
@@ -150,12 +150,18 @@ impl Intake {
             return Err(GapError::ClockSteps { log: name.to_string(), line, by_s });
         }
         let known = |id| decoder.tap(id).is_some();
-        if let Some(TwoMachines { id, interfaces, line }) = self.interfaces.two_machines(known) {
-            let (log, message) = (name.to_string(), decoder.name_of_message(id));
-            let [one, other] = interfaces.map(|name| name.to_string());
-            return Err(GapError::TwoMachines { log, line, message, one, other });
-        }
         let mut kinds = std::mem::take(&mut self.faults);
+        let twice = self.interfaces.two_voiced(known);
+        let are_machines = twice.len() >= MESSAGES_MIN;
+        for TwoVoiced { id, interfaces, line } in twice {
+            let message = decoder.name_of_message(id);
+            let [one, other] = interfaces.map(|name| name.to_string());
+            if are_machines {
+                let log = name.to_string();
+                return Err(GapError::TwoMachines { log, line, message, one, other });
+            }
+            kinds.push((line, FaultKind::TwoVoiced { message, interfaces: [one, other] }));
+        }
         kinds.extend(self.faults_of_frames(decoder));
         kinds.sort_by_key(|(line, _)| *line);
         let fault = |(line, kind)| LogFault { log: name.clone(), line, kind };

@@ -11,7 +11,7 @@ use xt28_machine::SimTime;
 /// So many frames of a message on either interface, while the other speaks too, are no strays.
 const FRAMES_MIN: u64 = 50;
 /// So many messages are more than an ECU copies from one of its buses to another, perhaps from another tick.
-const MESSAGES_MIN: usize = 3;
+pub(super) const MESSAGES_MIN: usize = 3;
 /// Share of a message's frames that the other interface did not say, either way round: a bridge hands on what it
 /// hears, some of it late, but one of the two then says what the other said.
 const STRANGE_MAX: f64 = 0.2;
@@ -36,9 +36,9 @@ struct Side {
     strange: u64,
 }
 
-/// A message that comes from two machines.
+/// A message that says another thing on one interface than on the other.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct TwoMachines {
+pub(super) struct TwoVoiced {
     pub(super) id: CanId,
     pub(super) interfaces: [Arc<str>; 2],
     /// The first line of the second.
@@ -89,17 +89,19 @@ impl Interfaces {
         (side.count, side.last_at) = (side.count + 1, record.at);
     }
 
-    /// The message, of those that are `known` and that two machines send, that the second sends first.
-    pub(super) fn two_machines(&self, known: impl Fn(CanId) -> bool) -> Option<TwoMachines> {
+    /// The messages, of those that are `known`, that say another thing on one interface than on the other, in the
+    /// order in which the second interface has them: are they [`MESSAGES_MIN`], those of two machines.
+    pub(super) fn two_voiced(&self, known: impl Fn(CanId) -> bool) -> Vec<TwoVoiced> {
         let twice = |(id, sides): (&CanId, &[Option<Side>; 2])| {
             let [Some(one), Some(other)] = sides else { return None };
             let interfaces = [&one.name, &other.name].map(Arc::clone);
-            let two = TwoMachines { id: *id, interfaces, line: other.first_line };
+            let two = TwoVoiced { id: *id, interfaces, line: other.first_line };
             (one.says_its_own() && other.says_its_own()).then_some(two)
         };
-        let twice: Vec<_> = self.0.iter().filter(|(id, _)| known(**id)).filter_map(twice).collect();
-        let are_machines = twice.len() >= MESSAGES_MIN;
-        twice.into_iter().min_by_key(|two| two.line).filter(|_| are_machines)
+        let mut twice: Vec<_> =
+            self.0.iter().filter(|(id, _)| known(**id)).filter_map(twice).collect();
+        twice.sort_by_key(|two| two.line);
+        twice
     }
 }
 
@@ -109,7 +111,7 @@ mod tests {
 
     /// What is found of so many messages, of which `said(i, interface)` is what comes on an interface at `i` times 10 ms;
     /// nothing where there is none.
-    fn found(messages: u16, said: impl Fn(usize, usize) -> Option<usize>) -> Option<TwoMachines> {
+    fn found(messages: u16, said: impl Fn(usize, usize) -> Option<usize>) -> Vec<TwoVoiced> {
         let mut interfaces = Interfaces::default();
         let mut line = 0;
         for i in 0..300 {
@@ -124,26 +126,28 @@ mod tests {
                 }
             }
         }
-        interfaces.two_machines(|_| true)
+        interfaces.two_voiced(|_| true)
     }
 
     #[test]
     fn two_that_differ_are_two_machines() {
-        let two = found(5, |i, k| Some(2 * i + k)).unwrap();
-        assert_eq!((two.id, two.line), (CanId::Standard(0), 2));
-        assert_eq!(two.interfaces.map(|name| name.to_string()), ["can0", "can1"]);
-        assert_eq!(found(2, |i, k| Some(2 * i + k)), None, "an ECU may copy some");
+        let all = found(5, |i, k| Some(2 * i + k));
+        assert_eq!(all.iter().map(|two| two.line).collect::<Vec<_>>(), [2, 4, 6, 8, 10]);
+        let two = &all[0];
+        assert_eq!(two.id, CanId::Standard(0));
+        assert_eq!(two.interfaces.each_ref().map(|name| name.to_string()), ["can0", "can1"]);
+        assert!(found(2, |i, k| Some(2 * i + k)).len() < MESSAGES_MIN, "an ECU may copy some");
     }
 
     #[test]
     fn one_that_is_heard_twice_is_one() {
         // Handed on at once, late, or before, where the log begins between the two.
         for late in [0, 1, 12] {
-            assert_eq!(found(5, |i, k| i.checked_sub(late * k)), None);
-            assert_eq!(found(5, |i, k| i.checked_sub(late * (1 - k))), None);
+            assert_eq!(found(5, |i, k| i.checked_sub(late * k)), []);
+            assert_eq!(found(5, |i, k| i.checked_sub(late * (1 - k))), []);
         }
         // Strays of another, and one interface after the other.
-        assert_eq!(found(5, |i, k| (k == 0 || i == 7).then_some(2 * i + k)), None);
-        assert_eq!(found(5, |i, k| ((i < 150) == (k == 0)).then_some(2 * i + k)), None);
+        assert_eq!(found(5, |i, k| (k == 0 || i == 7).then_some(2 * i + k)), []);
+        assert_eq!(found(5, |i, k| ((i < 150) == (k == 0)).then_some(2 * i + k)), []);
     }
 }

@@ -300,6 +300,16 @@ pub enum GapError {
     /// The ground cannot be built.
     #[error(transparent)]
     Terrain(#[from] xt28_sim::TerrainError),
+    /// A log is packed by a program whose files are not read.
+    #[error(
+        "{path}: packed by {packer}; unpack it first, or pack it with gzip, which is read as it is"
+    )]
+    Packed {
+        /// The file.
+        path: PathBuf,
+        /// The program.
+        packer: &'static str,
+    },
     /// Two files hold one log.
     #[error("{again}: the same log as {first}; give each log once, or it counts twice")]
     SameLog {

@@ -6,6 +6,7 @@ mod gzip;
 mod intake;
 mod interfaces;
 mod order;
+mod packed;
 mod stillness;
 mod thinned;
 
@@ -76,6 +77,9 @@ impl FieldLog {
         let file = File::open(path).map_err(|source| GapError::read(path, source))?;
         let mut input = BufReader::new(file);
         let head = input.fill_buf().map_err(|source| GapError::read(path, source))?;
+        if let Some(packer) = packed::packer(head) {
+            return Err(GapError::Packed { path: path.to_owned(), packer });
+        }
         let name = path.display().to_string();
         if !head.starts_with(&gzip::MAGIC) {
             return Self::of_bytes(input, &name, decoder, accept_cut)?.finish(&name, decoder);

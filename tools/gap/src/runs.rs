@@ -21,7 +21,7 @@ use crate::{About, Decoder, FieldLog, GapError};
 
 use attended::attended;
 pub use choice::{Choice, Use};
-use names::{ensure_told_apart, names};
+use names::{ensure_each_once, ensure_told_apart, names};
 use shared_time::{SharedTime, shared_time};
 
 /// Logs of one machine, in the order given, no two the same.
@@ -71,6 +71,7 @@ impl RunSet {
         known: Known<'_>,
         accept_cut: bool,
     ) -> Result<Self, GapError> {
+        ensure_each_once(paths)?;
         let about = known.about.map(About::load).transpose()?;
         let one_ground = known.terrain.map(Terrain::load).transpose()?;
         if let (Some(about), Some(file)) = (&about, known.about) {

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use same_file::is_same_file;
+
 use crate::{About, GapError};
 
 /// A name for each of `paths`, no two alike where the paths are not: each day's first run may be `run-1.log`.
@@ -26,6 +28,21 @@ fn end_of(path: &Path, parts: usize) -> PathBuf {
 /// A name without its folder.
 pub(super) fn bare(name: &str) -> &str {
     name.rsplit('/').next().unwrap_or(name)
+}
+
+/// Refuses `paths` of which two are one file, however it is spelt.
+///
+/// # Errors
+/// [`GapError::SameLog`].
+pub(super) fn ensure_each_once(paths: &[PathBuf]) -> Result<(), GapError> {
+    for (i, again) in paths.iter().enumerate() {
+        let first = paths[..i].iter().find(|first| is_same_file(first, again).unwrap_or(false));
+        if let Some(first) = first {
+            let [first, again] = [first, again].map(|path| path.display().to_string());
+            return Err(GapError::SameLog { first, again });
+        }
+    }
+    Ok(())
 }
 
 /// Refuses an `about`, read from `file`, of which one run would speak of two of the logs.
@@ -61,6 +78,18 @@ pub(super) fn ensure_told_apart(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_by_two_spellings_is_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let plain = folder.path().join("a.log");
+        std::fs::write(&plain, "").unwrap();
+        let spelt = folder.path().join(".").join("a.log");
+        let error = ensure_each_once(&[plain.clone(), spelt]).unwrap_err().to_string();
+        assert!(error.contains("the same log as"), "{error}");
+        let not_there = folder.path().join("b.log");
+        assert!(ensure_each_once(&[plain, not_there.clone(), not_there]).is_ok());
+    }
 
     fn paths(names: &[&str]) -> Vec<PathBuf> {
         names.iter().map(PathBuf::from).collect()

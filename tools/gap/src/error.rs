@@ -269,8 +269,8 @@ pub enum GapError {
     },
     /// A channel reads what no such machine can have.
     #[error(
-        "{log}: {channel} ({signal}) reads {:.3} to {:.3} {unit}, and such a machine has {} to {} {unit} at the most; check DBC and mapping (signal, unit, scale)",
-        found[0], found[1], possible[0], possible[1]
+        "{log}: {channel} ({signal}) reads {} to {} {unit}, and such a machine has {} to {} {unit} at the most; check DBC and mapping (signal, unit, scale)",
+        read(found[0]), read(found[1]), possible[0], possible[1]
     )]
     Impossible {
         /// The log.
@@ -363,6 +363,11 @@ pub enum GapError {
         /// Who chose so.
         why: String,
     },
+}
+
+/// A value as it is read; one beyond all measure by its power of ten, not by its digits.
+fn read(value: f64) -> String {
+    if value.abs() < 1e7 { format!("{value:.3}") } else { format!("{value:.2e}") }
 }
 
 /// What a step of the clock looks like: ahead nobody can tell it from a logger that paused.

@@ -8,10 +8,8 @@ use super::headline;
 use super::rows::Rows;
 use super::size::{at_wheels, sizes};
 use super::words::{elsewhere, is_elsewhere, judged_on, percent, short, shrink, without_a_name};
-use crate::diagnosis::{Cause, Diagnosis};
+use crate::diagnosis::{Cause, Diagnosis, WORTH_TELLING};
 
-/// Causes below this probability are left out, but for the first few.
-const LISTED_ABOVE: f64 = 0.01;
 /// Causes that are listed in any case.
 const LISTED_ANYWAY: usize = 3;
 
@@ -104,7 +102,7 @@ fn places(out: &mut String, diagnosis: &Diagnosis) {
 fn causes(out: &mut String, diagnosis: &Diagnosis) {
     let _ = writeln!(out, "\n{:>11}  cause", "probability");
     let listed =
-        |(i, cause): &(usize, &Cause)| *i < LISTED_ANYWAY || cause.probability > LISTED_ABOVE;
+        |(i, cause): &(usize, &Cause)| *i < LISTED_ANYWAY || cause.probability > WORTH_TELLING;
     for (_, cause) in diagnosis.causes.iter().enumerate().filter(listed) {
         let wheels = if cause.effect.has_scope() { cause.scope.to_string() } else { String::new() };
         let _ = writeln!(

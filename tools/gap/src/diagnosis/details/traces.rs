@@ -2,7 +2,7 @@
 
 use super::{Pair, STEP_S, rms};
 use crate::diagnosis::floor::Signal;
-use crate::diagnosis::generator::Generator;
+use crate::diagnosis::generator::{Generator, SAMPLES_PER_RESIDUAL};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::signals::{Samples, Signals};
 
@@ -120,5 +120,10 @@ fn reading(
 
 /// A sample in the middle of every residual's.
 fn thin(samples: &Samples, per_si: f64) -> Samples {
-    samples.iter().skip(5).step_by(10).map(|value| value * per_si).collect()
+    samples
+        .iter()
+        .skip(SAMPLES_PER_RESIDUAL / 2)
+        .step_by(SAMPLES_PER_RESIDUAL)
+        .map(|value| value * per_si)
+        .collect()
 }

@@ -7,7 +7,7 @@ use xt28_sim::{Effects, Parts};
 use crate::diagnosis::generator::axles::Axles;
 use crate::diagnosis::generator::press::{axles_n, own_n};
 use crate::diagnosis::kinematics::swung_m;
-use crate::diagnosis::signals::{DT_S, Samples, Signals};
+use crate::diagnosis::signals::{DT_S, Samples, Signals, slope_over};
 
 /// Half of the time over which speeds give an acceleration and joints a rate, samples.
 const HALF_SPAN: usize = 10;
@@ -38,7 +38,7 @@ impl Motion {
     /// Motion that wheel speeds and joints say.
     pub(super) fn new(s: &Signals, machine: &Machine) -> Self {
         let speed = speeds(s, machine);
-        let ahead_m_s2 = slope(&speed);
+        let ahead_m_s2 = slope_over(&speed, HALF_SPAN);
         let turn_rad_s = turn_rates(s, machine, &speed);
         let left_m_s2: Samples = speed.iter().zip(&turn_rad_s).map(|(v, r)| v * r).collect();
         let mut rocking = 0;
@@ -57,7 +57,7 @@ fn speeds(s: &Signals, machine: &Machine) -> Samples {
     let swings = PerWheel::from_fn(|w| {
         let pose = s.stroke_m[w].iter().map(|stroke| parts.linkage.at_stroke(*stroke));
         let swung = pose.map(|pose| swung_m(parts.arms[w].extends, parts.radius_m, &pose));
-        slope(&swung.collect())
+        slope_over(&swung.collect(), HALF_SPAN)
     });
     let mut last = 0.0;
     let step = |i: usize| {
@@ -82,7 +82,7 @@ fn turn_rates(s: &Signals, machine: &Machine, speed_m_s: &Samples) -> Samples {
     let axles = Axles::new(machine);
     let parts = Parts::new(machine, &Effects::default());
     let own_n = PerWheel::from_fn(|w| own_n(machine, &parts, w));
-    let joint_rates = [0, 1].map(|joint: usize| slope(&s.joint_rad[joint]));
+    let joint_rates = [0, 1].map(|joint: usize| slope_over(&s.joint_rad[joint], HALF_SPAN));
     let at = |i: usize| {
         let pose = PerWheel::from_fn(|w| parts.linkage.at_stroke(s.smooth_stroke_m[w][i]));
         let load_n = PerWheel::from_fn(|w| s.cylinder_load_n[w][i]);
@@ -92,17 +92,6 @@ fn turn_rates(s: &Signals, machine: &Machine, speed_m_s: &Samples) -> Samples {
         axles.rolling_under(pressed_n, angle, rate, speed_m_s[i]).turn_rad_s[0]
     };
     (0..s.len).map(at).collect()
-}
-
-/// Central differences.
-#[allow(clippy::cast_precision_loss)]
-fn slope(samples: &Samples) -> Samples {
-    let end = samples.len().saturating_sub(1);
-    let at = |i: usize| {
-        let (from, to) = (i.saturating_sub(HALF_SPAN), (i + HALF_SPAN).min(end));
-        (samples[to] - samples[from]) / ((to - from).max(1) as f64 * DT_S)
-    };
-    (0..samples.len()).map(at).collect()
 }
 
 /// `samples` through a first-order lag that starts settled on the first.

@@ -177,6 +177,18 @@ fn dropped(message: &str, gaps: &[Gap], is_held: bool) -> String {
     )
 }
 
+/// That it is the longest of so many times, where it is.
+fn again(times: u64) -> String {
+    if times > 1 { format!(" (the longest of {times} times)") } else { String::new() }
+}
+
+/// So many error, remote and CAN FD frames.
+fn passed(frames: [u64; 3]) -> String {
+    let kinds = frames.into_iter().zip(["error", "remote", "CAN FD"]);
+    let there = kinds.filter(|(frames, _)| *frames > 0);
+    there.map(|(n, kind)| format!("{n} {kind} frames")).collect::<Vec<_>>().join(", ")
+}
+
 /// The longest of `gaps`, with when that is.
 fn longest_told<'a>(gaps: impl IntoIterator<Item = &'a Gap>) -> String {
     let longest = gaps.into_iter().max_by(|a, b| a.length_s().total_cmp(&b.length_s()));
@@ -296,23 +308,17 @@ impl fmt::Display for LogFault {
                 "{message} has a wrong CRC, first at {at_s:.3} s; {frames} such frames are left out, so check E2eDataId in the DBC if those are all"
             ),
             FaultKind::PassedOver { remote, error, fd } => {
-                let kinds = [(error, "error"), (remote, "remote"), (fd, "CAN FD")];
-                let there = kinds.iter().filter(|(frames, _)| **frames > 0);
-                let each: Vec<String> =
-                    there.map(|(n, kind)| format!("{n} {kind} frames")).collect();
-                write!(f, "from here on {}; nothing is read from them", each.join(", "))
-            }
-            FaultKind::Frozen { channel, value, unit, from_s, to_s, meanwhile, times } => {
-                let again = if *times > 1 {
-                    format!(" (the longest of {times} times)")
-                } else {
-                    String::new()
-                };
                 write!(
                     f,
-                    "reading {channel} stood still at {value:.3} {unit} from {from_s:.1} s to {to_s:.1} s{again} while {meanwhile}; it is taken as it is, so cut the log there if the sensor froze"
+                    "from here on {}; nothing is read from them",
+                    passed([*error, *remote, *fd])
                 )
             }
+            FaultKind::Frozen { channel, value, unit, from_s, to_s, meanwhile, times } => write!(
+                f,
+                "reading {channel} stood still at {value:.3} {unit} from {from_s:.1} s to {to_s:.1} s{} while {meanwhile}; it is taken as it is, so cut the log there if the sensor froze",
+                again(*times)
+            ),
             FaultKind::Unbelievable { channel, problem, values } => write!(
                 f,
                 "{channel} cannot be believed: {problem}; {values} such values are left out, so check the signal's range in the DBC"

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::{Command, ExitStatus};
 
 use super::build::{build, executable};
-use super::{Check, TESTS, Test, Work};
+use super::{CHECKS, Check, TESTS, Test, Work};
 use crate::guest::Guest;
 use crate::harness::{Reader, Report};
 use crate::side_by_side;
@@ -50,6 +50,12 @@ impl Bench {
         let tests = tests.collect::<Outcome<Vec<_>>>()?;
         let logs = workspace.target.join("vcan-scenarios");
         fs::create_dir_all(&logs)?;
+        // No log with the time of day is written over, and the last run's would stand in this one's way.
+        for log in CHECKS.iter().map(|check| logs.join(format!("{}.log", check.log))) {
+            if log.exists() {
+                fs::remove_file(log)?;
+            }
+        }
         Ok(Self { xt28: executable(built.iter(), "xt28")?, tests, cache, logs })
     }
 

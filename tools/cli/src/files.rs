@@ -23,9 +23,9 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Whether `bytes` are of this form, or none.
+    /// Whether `bytes` are text of this form, or none.
     fn reads(self, bytes: &[u8]) -> bool {
-        let Ok(text) = str::from_utf8(bytes) else { return matches!(self, Self::Any) };
+        let Ok(text) = str::from_utf8(bytes) else { return false };
         text.trim().is_empty()
             || match self {
                 Self::Json => serde_json::from_str::<IgnoredAny>(text).is_ok(),
@@ -49,7 +49,7 @@ impl Form {
 /// Refuses to replace what is there and is no such file as is to be written for `option`.
 pub(crate) fn replaceable(path: &Path, option: &str, form: Form) -> Result<(), Failure> {
     // What is no file keeps nothing.
-    if !path.is_file() || form.reads(&fs::read(path)?) {
+    if matches!(form, Form::Any) || !path.is_file() || form.reads(&fs::read(path)?) {
         return Ok(());
     }
     let (path, name) = (path.display(), form.name());

@@ -233,7 +233,8 @@ impl Generator {
         let mut all = self.all_residuals_over(s, machine, schedule);
         // What a command's place in time is does not hang on what was before.
         if self != Self::Bus {
-            all.iter_mut().for_each(|residual| unsettled(&mut residual.values, s.settles_s()));
+            let settles_s = s.settles_s();
+            all.iter_mut().for_each(|residual| unsettled(&mut residual.values, settles_s));
         }
         all
     }

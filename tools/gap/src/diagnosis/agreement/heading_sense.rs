@@ -24,6 +24,8 @@ const BESIDE_RAD: f64 = 0.35;
 const TURNS: f64 = 0.005;
 /// What is off by this share of what headings as they are told are off by is explained.
 const EXPLAINED: f64 = 0.25;
+/// What makes a heading look odd that is not.
+const UNLESS: &str = "unless east and north of the fixes are exchanged in DBC or mapping";
 
 /// A heading that is not the way in which the machine goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,8 +134,7 @@ impl fmt::Display for OddHeading {
         if self.is_mirrored {
             return write!(
                 f,
-                "counts clockwise; in a mapping: scale = -1.0, offset = {offset_deg:.0}, unless east and north of the \
-                 fixes are exchanged in DBC or mapping"
+                "counts clockwise; in a mapping: scale = -1.0, offset = {offset_deg:.0}, {UNLESS}"
             );
         }
         let (turn, half) = (offset_deg, PI.to_degrees());
@@ -141,7 +142,7 @@ impl fmt::Display for OddHeading {
         write!(
             f,
             "is {beside:.0} deg beside it; in a mapping: offset = {beside:.0}, or, where it counts clockwise from north, \
-             scale = -1.0, offset = 90, unless east and north of the fixes are exchanged in DBC or mapping"
+             scale = -1.0, offset = 90, {UNLESS}"
         )
     }
 }

@@ -59,7 +59,7 @@ mod tests {
     use super::super::super::generator::still;
     use super::*;
 
-    /// Arms that go to and fro at `0.2 times` their valve's opening, FR's alone with the solenoids exchanged.
+    /// Arms that go to and fro at 0.2 m/s for an open valve, FR's at so many `times` that, and the others'.
     fn swinging(times: f64, others: f64) -> [Signals; 1] {
         let mut s = still::still(20);
         for wheel in Wheel::ALL {

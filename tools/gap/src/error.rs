@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use xt28_bus::candump::ReadError;
 
+use crate::Voices;
 use crate::diagnosis::Swap;
 
 pub use disagreement::Disagreement;
@@ -239,9 +240,7 @@ pub enum GapError {
         least_s: f64,
     },
     /// A log is two, at the same time.
-    #[error(
-        "{log}:{line}: {message} comes on {one} and on {other}, and says different things there: that is two machines; keep one, as `grep ' {one} '` does"
-    )]
+    #[error("{log}:{line}: {}", voices.of_machines(message))]
     TwoMachines {
         /// The log.
         log: String,
@@ -249,10 +248,8 @@ pub enum GapError {
         line: u64,
         /// A message that both send.
         message: String,
-        /// The interface that it came on first.
-        one: String,
-        /// The other.
-        other: String,
+        /// How both show.
+        voices: Voices,
     },
     /// A log is two, one after the other.
     #[error(

@@ -3,6 +3,7 @@
 mod attendance;
 mod gaps;
 mod gzip;
+mod in_turn;
 mod intake;
 mod interfaces;
 mod order;

@@ -33,6 +33,7 @@ mod report;
 mod runs;
 mod series;
 mod toml_error;
+mod voices;
 
 pub use about::{About, Ground, Run};
 pub use channel::{Channel, Need, PumpSide, SteerSide};
@@ -48,4 +49,5 @@ pub use replay::Replay;
 pub use report::Report;
 pub use runs::{Choice, Known, KnownRun, RunSet, Use};
 pub use series::Series;
+pub use voices::Voices;
 pub use xt28_sim::Terrain;

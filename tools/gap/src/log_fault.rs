@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use xt28_bus::candump::Skipped;
 
-use crate::Gap;
+use crate::{Gap, Voices};
 pub(crate) use told::{each_told, told};
 
 /// Something a reader of the result must know of its log. Displays as one line with file and line.
@@ -79,12 +79,12 @@ pub enum FaultKind {
         /// Frames in the log, those included.
         of: u64,
     },
-    /// A message says another thing on one interface than on the other; both are taken, as they come.
+    /// A message has two senders, which say different things; both are taken, as they come.
     TwoVoiced {
         /// Message.
         message: String,
-        /// The interface that it came on first, and the other.
-        interfaces: [String; 2],
+        /// How both show.
+        voices: Voices,
     },
     /// Frames have fewer bytes than the DBC says; they are left out.
     WrongLength {
@@ -287,10 +287,7 @@ impl fmt::Display for LogFault {
                 f,
                 "{message} is there twice from here on: {frames} of its {of} frames repeat the one before, long before the next is due; the repeats are left out, so check how the log was merged"
             ),
-            FaultKind::TwoVoiced { message, interfaces: [one, other] } => write!(
-                f,
-                "{message} says one thing on {one} and another on {other}, from here on; both are taken as they come, so leave out the interface of another device"
-            ),
+            FaultKind::TwoVoiced { message, voices } => write!(f, "{message} {voices}"),
             FaultKind::WrongLength { message, found, wanted, frames } => write!(
                 f,
                 "{message} has {found} bytes where the DBC says {wanted}; {frames} such frames are left out, so check that log and DBC belong together"

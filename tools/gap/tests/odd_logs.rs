@@ -54,6 +54,37 @@ fn two_machines_on_two_interfaces_are_told_and_none_is_taken() {
     assert!(refused.starts_with(wanted) && refused.contains("grep ' can0 '"), "{refused}");
 }
 
+/// Several seconds of the log's frames, and 5 ms behind each the same frame with each of `others` in it.
+fn said_in_turn(others: &[(&str, &str)]) -> String {
+    let mut lines = Vec::new();
+    for (round, (us, frame)) in (0..3).flat_map(|k| frames().into_iter().map(move |f| (k, f))) {
+        let us = us + round * 1_010_000;
+        let other = others.iter().fold(frame.to_owned(), |f, (a, b)| f.replace(a, b));
+        lines.extend([(us, frame.to_owned()), (us + 5_000, other)]);
+    }
+    lines.sort_by_key(|(us, _)| *us);
+    lines.iter().map(|(us, frame)| line(*us, "can0", frame)).collect()
+}
+
+#[test]
+fn two_senders_on_one_interface_are_told_and_three_messages_of_theirs_are_two_machines() {
+    let others = [
+        ("18FE1025#28", "18FE1025#38"),
+        ("18FE1026#2A", "18FE1026#3A"),
+        ("5229#FE03", "5229#9E03"),
+    ];
+    let told = |text: &str| -> Vec<String> {
+        read(text).unwrap().faults().iter().map(ToString::to_string).collect()
+    };
+    let says = "PosMidRear says two things in turn from here on, as two senders do";
+    assert!(!told(&said_in_turn(&[])).iter().any(|told| told.contains("in turn")));
+    let one = told(&said_in_turn(&others[..1]));
+    assert!(one.iter().any(|told| told.contains(says)), "{one:?}");
+    let refused = read(&said_in_turn(&others)).unwrap_err().to_string();
+    let wanted = "comes from two senders from here on, which say different things in turn";
+    assert!(refused.contains(wanted) && refused.contains("record with one"), "{refused}");
+}
+
 #[test]
 fn a_frame_of_nothing_but_ones_is_no_reading() {
     let mut tick = -1;

@@ -12,6 +12,10 @@ use crate::decoder::{Tap, Unread};
 const SAME_COUNT_PERIODS: f64 = 0.75;
 /// The same without a counter, where a reading may well be the same twice in a row.
 const SAME_READING_PERIODS: f64 = 0.25;
+/// A frame within this share of the period was sent by another, or written late.
+const EARLY_PERIODS: f64 = 0.75;
+/// So many of those are no strays.
+const EARLY_MIN: u64 = 50;
 
 /// What is known of one message so far.
 #[derive(Default)]
@@ -25,6 +29,8 @@ pub(super) struct Attendance {
     short: Option<(u64, usize, u64)>,
     long: Option<(u64, usize, u64)>,
     spoiled: Option<(u64, f64, u64)>,
+    /// Frames that came early, and the line of the first.
+    early: Option<(u64, u64)>,
 }
 
 /// The latest frame that was no repeat.
@@ -78,12 +84,24 @@ impl Attendance {
             (Some(before), Some(period)) => {
                 let away_s = (at - before).as_secs_f64();
                 self.gaps.note([at_s, away_s], period.as_secs_f64(), line);
+                if away_s < EARLY_PERIODS * period.as_secs_f64() {
+                    self.early.get_or_insert((line, 0)).1 += 1;
+                }
             }
             (None, Some(_)) => {}
-            (_, None) => self.arrivals.note(at, at_s, line),
+            (_, None) => {
+                self.arrivals.note(at, at_s, line);
+                self.early.get_or_insert((line, 0)).1 += 1;
+            }
         }
         let is_news = self.last.as_ref().is_some_and(|last| last.frame.data() != frame.data());
         self.last = Some(Heard { at, frame: *frame, before, is_news });
+    }
+
+    /// The line from which on it may have two senders: there are enough frames before they are due, or the
+    /// database does not say when that is.
+    pub(super) fn crowded_from(&self) -> Option<u64> {
+        self.early.filter(|(_, frames)| *frames >= EARLY_MIN).map(|(line, _)| line)
     }
 
     /// What is missing of it.

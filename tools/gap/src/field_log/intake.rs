@@ -11,12 +11,13 @@ use xt28_machine::SimTime;
 
 use super::FieldLog;
 use super::attendance::Attendance;
+use super::in_turn::alternates;
 use super::interfaces::{Interfaces, MESSAGES_MIN, TwoVoiced};
 use super::order::{Order, Place};
 use super::stillness::Stillness;
 use super::thinned::is_thinned;
 use crate::decoder::Tap;
-use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series};
+use crate::{Channel, Decoder, FaultKind, GapError, LogFault, Need, Series, Voices};
 
 /// No frame of any message for longer: twenty periods of the fastest are more than a bus ever loses.
 const PAUSE_S: f64 = 0.2;
@@ -149,18 +150,14 @@ impl Intake {
             let by_s = -span.as_secs_f64();
             return Err(GapError::ClockSteps { log: name.to_string(), line, by_s });
         }
-        let known = |id| decoder.tap(id).is_some();
         let mut kinds = std::mem::take(&mut self.faults);
-        let twice = self.interfaces.two_voiced(known);
+        let twice = self.two_voiced(decoder);
         let are_machines = twice.len() >= MESSAGES_MIN;
-        for TwoVoiced { id, interfaces, line } in twice {
-            let message = decoder.name_of_message(id);
-            let [one, other] = interfaces.map(|name| name.to_string());
+        for (line, message, voices) in twice {
             if are_machines {
-                let log = name.to_string();
-                return Err(GapError::TwoMachines { log, line, message, one, other });
+                return Err(GapError::TwoMachines { log: name.to_string(), line, message, voices });
             }
-            kinds.push((line, FaultKind::TwoVoiced { message, interfaces: [one, other] }));
+            kinds.push((line, FaultKind::TwoVoiced { message, voices }));
         }
         kinds.extend(self.faults_of_frames(decoder));
         kinds.sort_by_key(|(line, _)| *line);
@@ -181,6 +178,28 @@ impl Intake {
             begun_s: self.first.map(|first| (first - SimTime::default()).as_secs_f64()),
             name,
         })
+    }
+
+    /// Messages with two senders that say different things, each with a line, those on two interfaces first.
+    fn two_voiced(&self, decoder: &Decoder) -> Vec<(u64, String, Voices)> {
+        let on_two = self.interfaces.two_voiced(|id| decoder.tap(id).is_some());
+        let ids: BTreeSet<CanId> = on_two.iter().map(|two| two.id).collect();
+        let in_turn = self.messages.iter().filter_map(|(id, attendance)| {
+            let (tap, line) = (decoder.tap(*id)?, attendance.crowded_from()?);
+            let alternates = |channel| {
+                let (series, step) = (self.series.get(&channel)?, tap.step_of(channel));
+                Some(alternates(series, step.unwrap_or(0.0)))
+            };
+            let is_one = !ids.contains(id) && tap.channels().any(|c| alternates(c) == Some(true));
+            is_one.then(|| (line, tap.name().to_owned(), Voices::InTurn))
+        });
+        let mut in_turn: Vec<_> = in_turn.collect();
+        in_turn.sort_by_key(|(line, ..)| *line);
+        let on_two = on_two.into_iter().map(|TwoVoiced { id, interfaces, line }| {
+            let names = interfaces.map(|name| name.to_string());
+            (line, decoder.name_of_message(id), Voices::Interfaces(names))
+        });
+        on_two.chain(in_turn).collect()
     }
 
     /// Refuses a log that lacks what a replay needs, with the first fault that explains it.

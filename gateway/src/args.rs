@@ -10,7 +10,8 @@ use gateway::{Fix, Geodetic};
 /// Arms by itself once both ECUs and all sensors are alive, and the GNSS receiver and the controller where the
 /// policy needs one. Ends when the policy is done or the safety kernel has stopped it; with --duration only after
 /// that time. SIGUSR1 is the order to arm: again after a safety stop, and at all where controllers beyond this
-/// machine may connect. SIGINT and SIGTERM stop the machine, go silent, then exit. SIGUSR2 is the emergency stop: no
+/// machine may connect. SIGINT and SIGTERM stop the machine, go silent, then exit; a second one exits at once,
+/// and leaves the stop to the ECUs. SIGUSR2 is the emergency stop: no
 /// order arms after it, only a new run does.
 ///
 /// Exit code: 0 done (or interrupted where there was nothing to be done, as in hold), 1 not done
@@ -29,7 +30,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "POLICY")]
     pub(crate) policy: String,
 
-    /// Serial port of the u-blox receiver (NAV-PVT, NAV-RELPOSNED and, better, NAV-HPPOSLLH)
+    /// Serial port of the u-blox receiver (NAV-PVT, NAV-RELPOSNED and, better, NAV-HPPOSLLH): the rover of a moving
+    /// base, its antenna ahead of the base's on the machine's axis
     #[arg(long, value_name = "DEVICE")]
     pub(crate) gnss: Option<PathBuf>,
 
@@ -47,7 +49,7 @@ pub(crate) struct Args {
     pub(crate) least_fix: LeastFix,
 
     /// The worst horizontal accuracy, as the receiver estimates it, that the machine is driven by
-    #[arg(long, value_name = "M", value_parser = metres, default_value = "0.5")]
+    #[arg(long, value_name = "M", value_parser = metres, default_value = "0.5", allow_negative_numbers = true)]
     pub(crate) least_accuracy: f64,
 
     /// Origin of the local frame: degrees, degrees, metres above the ellipsoid

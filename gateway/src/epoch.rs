@@ -123,11 +123,13 @@ impl EpochCollector {
 
 fn epoch(pvt: &NavPvt, fine: Option<&NavHpPosLlh>, relative: &NavRelPosNed) -> Epoch {
     let valid = pvt.position_valid && fine.is_none_or(|fine| fine.valid);
-    // The baseline points forward: base antenna behind, rover antenna ahead.
+    // The baseline points forward: base antenna behind, rover antenna ahead. To a base that stands somewhere it
+    // points there.
     // A receiver calls it valid before its ambiguities are fixed, however far it is off.
     let sure = matches!(relative.carrier, CarrierSolution::Float | CarrierSolution::Fixed)
         && relative.accuracy_heading_rad <= HEADING_ACCURACY_MAX_RAD;
-    let heading_rad = (relative.heading_valid && relative.fix_ok && sure)
+    let on_board = relative.moving_base;
+    let heading_rad = (relative.heading_valid && relative.fix_ok && sure && on_board)
         .then(|| wrap(FRAC_PI_2 - relative.heading_rad));
     Epoch {
         position: fine.map_or(pvt.position, |fine| fine.position),
@@ -193,6 +195,7 @@ mod tests {
                 time_of_week_ms,
                 heading_rad: 0.0,
                 heading_valid: true,
+                moving_base: true,
                 fix_ok: true,
                 carrier,
                 ..NavRelPosNed::default()

@@ -2,7 +2,7 @@
 
 use xt28_dbc::messages::{ArmStatus, ArmTarget, ArmValve, DriveStatus, DriveTarget};
 use xt28_dbc::{EncodeError, Frame, Outbox};
-use xt28_machine::{Machine, SimTime};
+use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_safety::{Command, Input, Measured, Order, Phase, Stamps, State, Verdict, step};
 use xt28_ubx::{Enu, LocalFrame};
 
@@ -11,8 +11,8 @@ use crate::frames::{self, Drive, FrameWriter};
 use crate::peer::Peer;
 use crate::policy::Answer;
 use crate::sensors::Sensors;
-use crate::status::{Status, Tally};
-use crate::trust::{trusted, trusts_loads};
+use crate::status::{Status, Stops, Tally};
+use crate::trust::{trusted, trusts_loads, turning_rad_s};
 use crate::{Action, ActionMap, GatewayConfig, Located, Observation, Outcome, Pace, Policy, Pose};
 
 /// After a stop, neutral frames go on for this long, so that the machine is brought to rest and not
@@ -44,7 +44,7 @@ pub struct Gateway {
     auto_arm: bool,
     armed_at: Option<SimTime>,
     verdict: Verdict,
-    first_hazard: Option<(SimTime, xt28_safety::Reason)>,
+    stops: Stops,
     neutral_left: u32,
     writer: FrameWriter,
     bus_ok: bool,
@@ -77,7 +77,7 @@ impl Gateway {
             auto_arm: config.arm_at_start,
             armed_at: None,
             verdict: Verdict::Block(xt28_safety::Reason::Disarmed),
-            first_hazard: None,
+            stops: Stops::default(),
             neutral_left: 0,
             writer: FrameWriter::new(machine.drive.engine_speed_rpm),
             bus_ok: true,
@@ -100,6 +100,7 @@ impl Gateway {
 
     /// Bytes from the receiver, in any portions.
     pub fn on_gnss(&mut self, now: SimTime, bytes: &[u8]) {
+        self.tally.gnss_bytes += bytes.len() as u64;
         if let Some(epoch) = self.epochs.push(bytes) {
             let overtaken = self.fresh.replace((now, epoch));
             self.tally.fixes_overtaken += u64::from(overtaken.is_some());
@@ -166,7 +167,7 @@ impl Gateway {
                 Verdict::Block(reason) => Some(reason),
                 Verdict::Allow(_) | Verdict::Clamp(..) => None,
             },
-            first_hazard: self.first_hazard,
+            stops: self.stops,
             outcome: self.outcome(),
             armed_at: self.armed_at,
             located: self.located,
@@ -175,6 +176,7 @@ impl Gateway {
             drive_ecu: self.drive_ecu.report(),
             counts: Tally {
                 fixes_incomplete,
+                gnss_messages: parsed.messages + parsed.other,
                 gnss_faults: parsed.bad_checksum + parsed.malformed + parsed.oversize,
                 frames_refused: self.sensors.refused()
                     + self.arm_ecu.refused()
@@ -258,7 +260,7 @@ impl Gateway {
             stroke_m: means.stroke_m,
             load_n: means.load_n,
             wheel_speed_rad_s: means.wheel_speed_rad_s,
-            wheel_speed_m_s: means.wheel_speed_rad_s.mean() * self.wheel_radius_m,
+            wheel_speed_m_s: self.speed_m_s(&means.wheel_speed_rad_s),
             front_joint_rad: means.front_joint_rad,
             rear_joint_rad: means.rear_joint_rad,
             previous_action,
@@ -271,8 +273,13 @@ impl Gateway {
     }
 
     fn measured(&self) -> Measured {
-        let said = self.sensors.measured(self.wheel_radius_m);
+        let said = self.sensors.measured(|wheel_rad_s| self.speed_m_s(wheel_rad_s));
         trusted(said, &self.arm_ecu, &self.drive_ecu)
+    }
+
+    /// Speed by the wheels.
+    fn speed_m_s(&self, wheel_rad_s: &PerWheel<f64>) -> f64 {
+        turning_rad_s(wheel_rad_s, &self.drive_ecu) * self.wheel_radius_m
     }
 
     fn input(&self, now: SimTime) -> Input {
@@ -320,7 +327,7 @@ impl Gateway {
                 self.neutral_left = NEUTRAL_TICKS;
             }
             Phase::Blocked(reason) => {
-                self.first_hazard.get_or_insert((now, reason));
+                self.stops.note(now, reason);
             }
             Phase::Disarmed => {}
         }

@@ -38,6 +38,7 @@ pub use peer::{EcuReport, PeerState};
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
 pub use remote::{Listen, Remote, Waited, Wanted};
-pub use status::{Status, Tally};
+pub use status::{Status, Stops, Tally};
+pub use xt28_machine::SimTime;
 pub use xt28_safety::{Order, Phase, Reason};
 pub use xt28_ubx::Geodetic;

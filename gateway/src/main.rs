@@ -9,6 +9,7 @@ mod departures;
 mod freshness;
 mod lateness;
 mod log;
+mod news;
 mod problem;
 mod realtime;
 mod report;

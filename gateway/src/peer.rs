@@ -21,6 +21,8 @@ pub(crate) const PRESSURE_SENSOR: u32 = 1;
 pub(crate) const ATTITUDE_SENSOR: u32 = 2;
 /// That of the drive ECU's joint sensors.
 pub(crate) const JOINT_SENSOR: u32 = 0;
+/// That of its six wheel speed sensors, of one or more of them.
+pub(crate) const WHEEL_SPEED_SENSOR: u32 = 1;
 
 /// What an ECU says of itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

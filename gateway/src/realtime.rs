@@ -18,6 +18,7 @@ use crate::announcer::Announcer;
 use crate::args::Args;
 use crate::freshness::Freshness;
 use crate::lateness::Lateness;
+use crate::news::News;
 use crate::problem::Problem;
 use crate::serial::SerialPort;
 use crate::wire::Wire;
@@ -37,6 +38,8 @@ pub(crate) struct Finished {
     /// What went wrong with the host and ended the run.
     pub(crate) broke: Option<Problem>,
     pub(crate) interrupted: bool,
+    /// Whether there is a receiver.
+    pub(crate) receiver: bool,
     /// What last stood against arming, if it never came to that.
     pub(crate) never_armed: Option<Reason>,
     pub(crate) seconds: f64,
@@ -169,6 +172,7 @@ impl Run {
             controller: self.remote.as_ref().map(Remote::account),
             broke: broke.or(self.broke).or(closed),
             interrupted,
+            receiver: args.gnss.is_some(),
             never_armed: self.never_armed,
             seconds,
         };
@@ -179,7 +183,7 @@ impl Run {
     fn go_on(&mut self, args: &Args, lateness: &mut Lateness) -> Result<(), Problem> {
         let mut out = Outbox::with_capacity(8);
         let mut bytes = [0; 4096];
-        let mut told = Phase::Disarmed;
+        let mut news = News::new();
         let mut due = Duration::ZERO;
         loop {
             self.listen_until(due)?;
@@ -187,7 +191,9 @@ impl Run {
             lateness.note(now.saturating_sub(due));
             self.read_gnss(&mut bytes);
             self.tick(now, &mut out)?;
-            tell(now, &mut told, &self.gateway, &self.announcer);
+            if let Some(what) = news.of(now, &self.gateway.status()) {
+                self.announcer.say(format!("{:8.2} s  {what}", now.as_secs_f64()));
+            }
             self.end_if_due(now, args);
             if self.ending && self.gateway.is_silent() {
                 return Ok(());
@@ -305,24 +311,6 @@ impl Run {
             }
         }
     }
-}
-
-/// Says when the safety kernel changes its phase.
-fn tell(now: Duration, told: &mut Phase, gateway: &Gateway, announcer: &Announcer) {
-    let status = gateway.status();
-    let phase = status.phase;
-    let news = core::mem::discriminant(&phase) != core::mem::discriminant(told);
-    *told = phase;
-    if !news {
-        return;
-    }
-    let what = match phase {
-        Phase::Disarmed => "disarmed".to_owned(),
-        Phase::Handshake { .. } => "handshake with both ECUs".to_owned(),
-        Phase::Armed => "armed".to_owned(),
-        Phase::Blocked(reason) => format!("stopped: {}", status.told(reason)),
-    };
-    announcer.say(format!("{:8.2} s  {what}", now.as_secs_f64()));
 }
 
 fn sim_time(since_start: Duration) -> SimTime {

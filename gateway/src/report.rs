@@ -1,7 +1,7 @@
 //! The result of a run: for people and for scripts.
 
 use gateway::policy::Account;
-use gateway::{EcuReport, Outcome, Status};
+use gateway::{EcuReport, Outcome, Reason, SimTime, Status};
 use serde_json::{Value, json};
 
 use crate::realtime::Finished;
@@ -12,8 +12,8 @@ pub(crate) fn shortfall(finished: &Finished) -> Option<String> {
     if let Some(problem) = &finished.broke {
         return Some(problem.to_string());
     }
-    if let Some((at, reason)) = status.first_hazard {
-        return Some(format!("safety stop at {at}: {reason}"));
+    if status.stops.count > 0 {
+        return Some(status.stops.to_string());
     }
     if let Some(reason) = finished.never_armed {
         return Some(format!("never armed: {}", status.told(reason)));
@@ -55,7 +55,9 @@ pub(crate) fn lines(finished: &Finished) -> Vec<String> {
         ));
     }
     lines.extend(finished.controller.as_ref().map(controller_line));
-    fix_lines(status, &mut lines);
+    if finished.receiver {
+        fix_lines(status, &mut lines);
+    }
     lines
 }
 
@@ -82,9 +84,20 @@ fn mean_ms(account: &Account) -> Option<f64> {
 /// What stood against the receiver's fixes, as far as something did.
 fn fix_lines(status: &Status, lines: &mut Vec<String>) {
     let counts = &status.counts;
+    match (counts.gnss_bytes, counts.gnss_messages) {
+        (0, _) => lines.push(
+            "nothing came from the receiver; is it powered, and is that its port and speed?".to_owned(),
+        ),
+        (bytes, 0) => lines.push(format!(
+            "{bytes} bytes came from the receiver, and no UBX message among them; let it send UBX on this port, at \
+             the port's speed"
+        )),
+        _ => {}
+    }
     if let fixes @ 1.. = counts.fixes_without_heading {
         lines.push(format!(
-            "{fixes} fixes came without a heading good to 3 degrees; does the receiver see its second antenna?"
+            "{fixes} fixes came without a heading good to 3 degrees; does the receiver see its second antenna, and \
+             is it the rover of a moving base?"
         ));
     }
     if let (None, epochs @ 1..) = (status.located, counts.fixes_incomplete) {
@@ -111,9 +124,9 @@ pub(crate) fn json(finished: &Finished) -> Value {
         "interrupted": interrupted,
         "seconds": seconds,
         "armed_at_s": status.armed_at.map(|at| at.as_secs_f64()),
-        "safety_stop": status.first_hazard.map(|(at, reason)| json!({
-            "at_s": at.as_secs_f64(), "reason": reason.to_string(),
-        })),
+        "safety_stop": status.stops.first.map(stop),
+        "last_safety_stop": status.stops.last.map(stop),
+        "safety_stops": status.stops.count,
         "front_axle": status.located.map(|located| json!({
             "east_m": located.pose.east_m, "north_m": located.pose.north_m,
             "heading_rad": located.pose.heading_rad,
@@ -134,6 +147,11 @@ pub(crate) fn json(finished: &Finished) -> Value {
                     "frames_discarded": finished.frames_discarded,
                     "frames_lost": finished.frames_lost },
     })
+}
+
+/// A safety stop.
+fn stop((at, reason): (SimTime, Reason)) -> Value {
+    json!({ "at_s": at.as_secs_f64(), "reason": reason.to_string() })
 }
 
 /// What an ECU said of itself last.

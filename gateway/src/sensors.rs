@@ -127,13 +127,13 @@ impl Sensors {
         if roll_rad.is_nan() { Attitude::default() } else { Attitude { roll_rad, pitch_rad } }
     }
 
-    /// The newest values, for the safety kernel, with the speed of wheels of this radius.
-    pub(crate) fn measured(&self, wheel_radius_m: f64) -> Measured {
+    /// The newest values, for the safety kernel; `speed_m_s` is what six wheels together say of it.
+    pub(crate) fn measured(&self, speed_m_s: impl Fn(&PerWheel<f64>) -> f64) -> Measured {
         let [roll_rad, pitch_rad] = self.attitude_rad.last();
         Measured {
             stroke_m: six(self.stroke_front_m.last(), self.stroke_rest_m.last()).0,
             front_angle_rad: self.joint_rad.last()[0],
-            speed_m_s: PerWheel(self.wheel_rad_s.last()).mean() * wheel_radius_m,
+            speed_m_s: speed_m_s(&PerWheel(self.wheel_rad_s.last())),
             roll_rad,
             pitch_rad,
         }

@@ -14,8 +14,8 @@ pub struct Status {
     pub phase: Phase,
     /// Why nothing leaves just now.
     pub blocked: Option<Reason>,
-    /// The first hazard that stopped an armed or arming kernel, and when.
-    pub first_hazard: Option<(SimTime, Reason)>,
+    /// Hazards that stopped an armed or arming kernel.
+    pub stops: Stops,
     /// How the policy's task stands.
     pub outcome: Outcome,
     /// When the kernel was armed last.
@@ -53,6 +53,38 @@ impl Status {
     }
 }
 
+/// Hazards that stopped an armed or arming kernel, or one that stood still for another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stops {
+    /// How many there were.
+    pub count: u32,
+    /// The first, and when.
+    pub first: Option<(SimTime, Reason)>,
+    /// The last one.
+    pub last: Option<(SimTime, Reason)>,
+}
+
+impl Stops {
+    pub(crate) fn note(&mut self, at: SimTime, reason: Reason) {
+        self.count = self.count.saturating_add(1);
+        self.first.get_or_insert((at, reason));
+        self.last = Some((at, reason));
+    }
+}
+
+impl core::fmt::Display for Stops {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (Some((at, reason)), Some((last_at, last))) = (self.first, self.last) else {
+            return f.write_str("no safety stop");
+        };
+        write!(f, "safety stop at {at}: {reason}")?;
+        if self.count > 1 {
+            write!(f, "; {} stops in all, the last at {last_at}: {last}", self.count)?;
+        }
+        Ok(())
+    }
+}
+
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -70,6 +102,10 @@ pub struct Tally {
     pub fixes_overtaken: u64,
     /// Epochs that were never complete.
     pub fixes_incomplete: u64,
+    /// Bytes that came from the receiver.
+    pub gnss_bytes: u64,
+    /// UBX messages in them, of any kind.
+    pub gnss_messages: u64,
     /// Faults in the receiver's stream: checksum, length, version.
     pub gnss_faults: u64,
     /// Frames that did not decode, or repeated their counter.

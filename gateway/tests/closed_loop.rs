@@ -98,7 +98,8 @@ fn the_handshake_moves_nothing() {
         }
         assert!(bench.now.as_secs_f64() < 1.0);
     }
-    assert!((10..=12).contains(&neutral), "{neutral} neutral rounds");
+    // Ten acknowledged ones are enough, but readings have to be steady for 0.22 s.
+    assert!((10..=22).contains(&neutral), "{neutral} neutral rounds");
 }
 
 #[test]

@@ -37,7 +37,8 @@ impl Driven {
         };
         let unarmed = status.blocked.filter(|_| status.armed_at.is_none());
         let safety_stop = status
-            .first_hazard
+            .stops
+            .first
             .map(|(at, reason)| SafetyStop { at_s: at.as_secs_f64(), reason: reason.to_string() });
         Self {
             armed_at_s: status.armed_at.map(|at| at.as_secs_f64()),
@@ -51,12 +52,16 @@ impl Driven {
 /// One line: `armed at 0.32 s, policy reached`.
 impl fmt::Display for Driven {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let stopped_at_s = self.safety_stop.as_ref().map(|stop| stop.at_s);
+        // Armed again after the first stop.
+        let again = self.armed_at_s > stopped_at_s && stopped_at_s.is_some();
+        let [last, first] = if again { ["last ", "first "] } else { ["", ""] };
         match self.armed_at_s {
-            Some(at_s) => write!(f, "armed at {at_s:.2} s")?,
+            Some(at_s) => write!(f, "armed {last}at {at_s:.2} s")?,
             None => f.write_str("never armed")?,
         }
         if let Some(SafetyStop { at_s, reason }) = &self.safety_stop {
-            write!(f, ", safety stop at {at_s:.2} s: {reason}")?;
+            write!(f, ", {first}safety stop at {at_s:.2} s: {reason}")?;
         }
         write!(f, ", policy {}", self.outcome)?;
         self.reason.as_ref().map_or(Ok(()), |reason| write!(f, ": {reason}"))
@@ -75,6 +80,8 @@ mod tests {
         let driven: Driven = serde_json::from_str(json).unwrap();
         let line = "armed at 0.31 s, safety stop at 2.50 s: roll, policy failed: no forward path";
         assert_eq!(driven.to_string(), line);
+        let again = Driven { armed_at_s: Some(5.0), ..driven.clone() }.to_string();
+        assert!(again.starts_with("armed last at 5.00 s, first safety stop at 2.50 s"), "{again}");
         assert_eq!(serde_json::to_value(&driven).unwrap()["safety_stop"]["at_s"], 2.5);
     }
 }

@@ -43,7 +43,7 @@ pub(crate) fn before_arming(
         return Some(Reason::MeasurementNotFinite);
     }
     // While armed it has to last: a single odd reading holds targets back and is gone again.
-    if !input.measured.is_plausible()
+    if !input.measured.is_plausible(limits)
         && (!state.is_armed() || limits.sensors.missed(Some(state.plausible_ns), now_ns))
     {
         return Some(Reason::MeasurementImplausible);

@@ -1,6 +1,6 @@
 //! Everything the kernel may know at one step.
 
-use crate::{Command, WHEELS};
+use crate::{Command, Limits, WHEELS};
 
 /// What is asked and what is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,11 +41,6 @@ pub enum Order {
     Release,
 }
 
-/// Strokes that a sensor in order can read, m (assumed: the cylinder has 0.5 m, and its sensor some beyond either end).
-const STROKE_M: core::ops::RangeInclusive<f64> = -0.05..=0.60;
-/// The largest joint angle that one can read, either way, rad (assumed: 45 degrees, where frames meet at 25).
-const ANGLE_MAX_RAD: f64 = core::f64::consts::FRAC_PI_4;
-
 /// Sensor values that limits are relative to. NaN where not known, which blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
@@ -71,11 +66,12 @@ impl Measured {
         pitch_rad: f64::NAN,
     };
 
-    /// True when strokes and joint are where they can be.
+    /// True when strokes and joint are where a sensor in order can read them.
     #[must_use]
-    pub fn is_plausible(&self) -> bool {
-        self.stroke_m.iter().all(|s| STROKE_M.contains(s))
-            && libm::fabs(self.front_angle_rad) <= ANGLE_MAX_RAD
+    pub fn is_plausible(&self, limits: &Limits) -> bool {
+        let [low_m, high_m] = limits.stroke_read_m;
+        self.stroke_m.iter().all(|s| (low_m..=high_m).contains(s))
+            && libm::fabs(self.front_angle_rad) <= limits.angle_read_rad
     }
 
     /// True when no number is NaN or infinite.

@@ -15,6 +15,7 @@ mod input;
 mod limit;
 mod limits;
 mod state;
+mod steady;
 mod step;
 mod verdict;
 

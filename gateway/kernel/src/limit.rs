@@ -25,7 +25,7 @@ pub(crate) fn hold(
     };
     let front_angle_rad =
         angle.hold(request.front_angle_rad, last.front_angle_rad, measured.front_angle_rad);
-    let (arms, arms_clamped) = arms(limits, request, last, measured, dt_s);
+    let (arms, arms_clamped) = arms(limits, request, state, measured, dt_s);
     let brake = request.brake && brake_may_close(limits, state, measured);
     let clamps = Clamps {
         brake: brake != request.brake,
@@ -60,7 +60,7 @@ fn throttle(limits: &Limits, request: &Command, last: f64, dt_s: f64) -> f64 {
 fn arms(
     limits: &Limits,
     request: &Command,
-    last: &Command,
+    state: &State,
     measured: &Measured,
     dt_s: f64,
 ) -> (Arms, [bool; WHEELS]) {
@@ -78,14 +78,16 @@ fn arms(
             for (wheel, stroke) in strokes.iter_mut().enumerate() {
                 let Some(wanted) = *stroke else { continue };
                 let is = measured.stroke_m[wheel];
-                // Coming from another mode or from hold, the arm starts from where it is.
-                let from = match last.arms {
-                    Arms::Position(before) => before[wheel].unwrap_or(is),
-                    _ => is,
+                let before = match state.last.arms {
+                    Arms::Position(before) => before[wheel],
+                    Arms::Off | Arms::Automatic | Arms::Valve(_) => None,
                 };
-                let held = channel.hold(wanted, from, is);
-                clamped[wheel] = differs(held, wanted);
-                *stroke = Some(held);
+                // Coming from another mode or from hold, the arm starts from where it is, once that is known.
+                let is_known = state.steadiness.has_arm(wheel, limits.steady_ns, state.last_ns);
+                let from = before.or_else(|| is_known.then_some(is));
+                let held = from.map(|from| channel.hold(wanted, from, is));
+                clamped[wheel] = held.is_none_or(|held| differs(held, wanted));
+                *stroke = held;
             }
             Arms::Position(strokes)
         }

@@ -60,6 +60,12 @@ pub struct Limits {
     pub roll_max_rad: f64,
     /// More pitch than this, either way, blocks, rad.
     pub pitch_max_rad: f64,
+    /// A stroke sensor in order reads between these, m.
+    pub stroke_read_m: [f64; 2],
+    /// A joint sensor in order reads between plus and minus this, rad.
+    pub angle_read_rad: f64,
+    /// A reading is one to start from when it has not leapt for so long, ns.
+    pub steady_ns: u64,
     /// Silence allowed to each ECU's status frame.
     pub status: Deadline,
     /// Silence allowed to the sensors that the limits lean on (strokes, attitude, joints).
@@ -93,7 +99,10 @@ impl Limits {
     /// track of 2.35 m with the mass at 1.6 m; pitch 25 degrees; a joint target may lead by 25
     /// degrees (5/8 of the opening of the steering valve); silences of ten status or sensor periods
     /// and three fixes; a brake that waits up to a second for 0.1 m/s (the 2016 firmware refuses it
-    /// above 150 per mille of filtered pedal, facts 4.4, which a throttle on the bus does not have).
+    /// above 150 per mille of filtered pedal, facts 4.4, which a throttle on the bus does not have); sensors that
+    /// read 3 cm beyond either end of the cylinder's 0.5 m (an open wire reads 4.5 cm beyond) and 20 degrees beyond
+    /// the joint's stop; readings that are started from once an ECU would have called them broken (after 200 ms, facts
+    /// 3.2) and said so.
     pub const XT28: Self = Self {
         stroke_max_m: 0.25,
         stroke_rate_m_s: 0.20,
@@ -108,6 +117,9 @@ impl Limits {
         brake_wait_ns: 1_000 * MILLISECOND_NS,
         roll_max_rad: 18.0 * DEGREE,
         pitch_max_rad: 25.0 * DEGREE,
+        stroke_read_m: [-0.03, 0.53],
+        angle_read_rad: 45.0 * DEGREE,
+        steady_ns: 220 * MILLISECOND_NS,
         status: Deadline { period_ns: 10 * MILLISECOND_NS, periods: 10 },
         sensors: Deadline { period_ns: 10 * MILLISECOND_NS, periods: 10 },
         observation: Deadline { period_ns: 125 * MILLISECOND_NS, periods: 3 },
@@ -136,6 +148,8 @@ impl Limits {
             self.brake_speed_m_s,
             self.roll_max_rad,
             self.pitch_max_rad,
+            self.stroke_read_m[1] - self.stroke_read_m[0],
+            self.angle_read_rad,
         ];
         // With a lag as large as the range, a dead ECU would look alive.
         floats.iter().all(|x| x.is_finite() && *x >= 0.0)

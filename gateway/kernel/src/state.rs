@@ -1,5 +1,6 @@
 //! What the kernel remembers from step to step.
 
+use crate::steady::Steadiness;
 use crate::{Command, Reason};
 
 /// Where in its life the kernel is.
@@ -34,6 +35,8 @@ pub struct State {
     pub(crate) acknowledged_ns: u64,
     /// When measured strokes and joint were last where they can be, ns.
     pub(crate) plausible_ns: u64,
+    /// Which strokes and whether the joint can be started from.
+    pub(crate) steadiness: Steadiness,
 }
 
 impl State {
@@ -47,6 +50,7 @@ impl State {
             braking_since_ns: None,
             acknowledged_ns: 0,
             plausible_ns: 0,
+            steadiness: Steadiness::UNKNOWN,
         }
     }
 

@@ -10,7 +10,8 @@ use crate::{Arms, Command, Input, Limits, Order, hazard, limit};
 /// within `limits`. Call it once a control period, also while disarmed.
 #[must_use]
 pub fn step(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Verdict) {
-    let state = obey(limits, state, input, now_ns);
+    let steadiness = state.steadiness.after(&input.measured, now_ns);
+    let state = obey(limits, State { steadiness, ..state }, input, now_ns);
     match state.phase() {
         Phase::Disarmed => stay(limits, state, input, now_ns, Reason::Disarmed),
         Phase::Blocked(reason) => stay(limits, state, input, now_ns, reason),
@@ -64,13 +65,15 @@ fn shake_hands(
     if let Some(reason) = hazard::before_arming(limits, &state, input, now_ns) {
         return block(state, reason, now_ns);
     }
+    let steady = state.steadiness.has_all(limits.steady_ns, now_ns);
     if now_ns.saturating_sub(since_ns) > limits.handshake_max_ns {
-        let unready = hazard::unready(input).unwrap_or(Reason::HandshakeTimeout);
+        let leaping = (!steady).then_some(Reason::MeasurementLeaps);
+        let unready = hazard::unready(input).or(leaping).unwrap_or(Reason::HandshakeTimeout);
         return block(state, unready, now_ns);
     }
     let in_step = hazard::both_in_step(limits, input);
     let acknowledged = if in_step { acknowledged.saturating_add(1) } else { 0 };
-    if in_step && acknowledged >= limits.handshake_steps {
+    if in_step && steady && acknowledged >= limits.handshake_steps {
         let armed = State {
             last: standing(input),
             last_ns: now_ns,
@@ -98,7 +101,8 @@ const fn standing(input: &Input) -> Command {
 fn pass(limits: &Limits, state: State, input: &Input, now_ns: u64) -> (State, Verdict) {
     let acknowledged_ns =
         if hazard::both_in_step(limits, input) { now_ns } else { state.acknowledged_ns };
-    let plausible_ns = if input.measured.is_plausible() { now_ns } else { state.plausible_ns };
+    let plausible_ns =
+        if input.measured.is_plausible(limits) { now_ns } else { state.plausible_ns };
     let state = State { acknowledged_ns, plausible_ns, ..state };
     if let Some(reason) = hazard::while_armed(limits, &state, input, now_ns) {
         return block(state, reason, now_ns);

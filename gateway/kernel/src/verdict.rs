@@ -85,6 +85,8 @@ pub enum Reason {
     MeasurementNotFinite,
     /// A stroke or a joint is measured where it cannot be.
     MeasurementImplausible,
+    /// A stroke or the front joint is read here and there, so that no target can start from it.
+    MeasurementLeaps,
     /// Too much roll.
     Roll,
     /// Too much pitch.
@@ -118,6 +120,7 @@ impl fmt::Display for Reason {
             Self::RequestNotFinite => "policy asked for a number that is not finite",
             Self::MeasurementNotFinite => "a measured value is not known, or its sensor broken",
             Self::MeasurementImplausible => "a stroke or joint is measured where it cannot be",
+            Self::MeasurementLeaps => "the reading of a stroke or of the front joint leaps about",
             Self::Roll => "roll above its limit",
             Self::Pitch => "pitch above its limit",
             Self::ArmEcuNotReady => "arm ECU in safe stop or fault",

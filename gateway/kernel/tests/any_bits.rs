@@ -28,7 +28,7 @@ fn finite() -> impl Strategy<Value = f64> {
 
 /// Where a sensor in order can have an arm.
 fn stroke_m() -> impl Strategy<Value = f64> + Clone {
-    -0.05..=0.6_f64
+    LIMITS.stroke_read_m[0]..=LIMITS.stroke_read_m[1]
 }
 
 fn command(number: impl Strategy<Value = f64> + Clone) -> impl Strategy<Value = Command> {
@@ -233,7 +233,7 @@ proptest! {
             angle_error_rad: a2, brake_speed_m_s: b, brake_wait_ns: period_ns, roll_max_rad: r, pitch_max_rad: p, status: every, sensors: every,
             observation: every, policy: every, acknowledgement: every, handshake_steps: 1,
             handshake_max_ns: period_ns, counter_lag_max: lag, counter_modulus: modulus,
-            step_max_ns: period_ns,
+            step_max_ns: period_ns, stroke_read_m: [p, s0], angle_read_rad: a0, steady_ns: period_ns,
         };
         let mut state = State::new();
         for input in inputs {

@@ -15,6 +15,8 @@ const GOAL_MAX_M: f64 = 300.0;
 const STANDING_M_S: f64 = 0.03;
 /// Standing this long ends a drive, s.
 const STANDING_S: f64 = 1.0;
+/// One that lets go of its throttle stands within two seconds; after this long something else is wrong, s (assumed).
+const STOPPING_MAX_S: f64 = 10.0;
 
 /// How a machine at `pose` stands to `goal`: reached, or how far off.
 pub(super) fn judge(pose: &Pose, goal: &Pose) -> Outcome {
@@ -42,11 +44,33 @@ pub(super) fn too_far(pose: &Pose, goal: &Pose) -> Option<Outcome> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Standstill {
     since: Option<SimTime>,
+    /// When it was looked at first.
+    begun: Option<SimTime>,
 }
 
 impl Standstill {
+    /// How a drive to `goal` came out, once the machine has stood at `pose` for a second, or should have long ago.
+    pub(super) fn outcome(
+        &mut self,
+        seen: &Observation,
+        pose: &Pose,
+        goal: &Pose,
+    ) -> Option<Outcome> {
+        let begun = *self.begun.get_or_insert(seen.at);
+        if self.has_stood(seen) {
+            return Some(judge(pose, goal));
+        }
+        let speed_m_s = seen.wheel_speed_m_s;
+        (seen.at.since(begun).as_secs_f64() >= STOPPING_MAX_S).then(|| {
+            Outcome::Failed(format!(
+                "{STOPPING_MAX_S} s after the throttle was let go the wheels still read {speed_m_s:.2} m/s; does a \
+                 sensor of theirs hang?"
+            ))
+        })
+    }
+
     /// Whether it has stood for a second.
-    pub(super) fn is_over(&mut self, seen: &Observation) -> bool {
+    fn has_stood(&mut self, seen: &Observation) -> bool {
         let start = *self.since.get_or_insert(seen.at);
         if seen.wheel_speed_m_s.abs() >= STANDING_M_S {
             self.since = None;

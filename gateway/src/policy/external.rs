@@ -9,9 +9,9 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use xt28_machine::{Machine, SimTime};
-use xt28_safety::{Arms, Command};
+use xt28_safety::Command;
 
-use super::{Answer, Outcome, Pace, Policy};
+use super::{Answer, Outcome, Pace, Policy, held};
 use crate::{Action, ActionMap, Observation};
 
 /// Observations that may still be answered. At 100 Hz, the last 0.64 s of them: the safety kernel takes what is older
@@ -88,13 +88,23 @@ struct Desk {
     account: Account,
     /// The newest one, until the controller takes it.
     fresh: Option<Seen>,
-    /// When the last ones were put together and sensed, the newest last.
-    lately: VecDeque<(SimTime, SimTime)>,
+    /// The last ones, the newest last.
+    lately: VecDeque<Shown>,
     /// The one answered last.
     answered: u64,
     /// The newest answer, until the gateway takes it.
-    answer: Option<(Action, SimTime)>,
+    answer: Option<(Action, Shown)>,
     outcome: Outcome,
+}
+
+/// What of an observation its answer is taken by.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    /// When it was put together.
+    at: SimTime,
+    sensed_at: SimTime,
+    /// Where the front joint stood, rad, if nothing was to move yet: whoever answers then asks for nothing.
+    unarmed_rad: Option<f64>,
 }
 
 impl Desk {
@@ -131,22 +141,29 @@ impl Policy for External {
         if desk.is_over() {
             // Nobody has to go on answering for a machine that only stands. One that is not armed by then need not be.
             observation.since_arming_s?;
-            let front_angle_rad = *self.held_rad.get_or_insert(observation.front_joint_rad);
-            let arms = Arms::Position([None; 6]);
-            return Some(Command { throttle: 0.0, front_angle_rad, arms, brake: true });
+            return Some(held(*self.held_rad.get_or_insert(observation.front_joint_rad), true));
         }
         desk.account.shown += 1;
         desk.fresh = Some(Seen { seq: desk.account.shown, observation: *observation });
         if desk.lately.len() == ANSWERABLE {
             desk.lately.pop_front();
         }
-        desk.lately.push_back((observation.at, observation.sensed_at));
+        let joint_rad = observation.front_joint_rad;
+        desk.lately.push_back(Shown {
+            at: observation.at,
+            sensed_at: observation.sensed_at,
+            unarmed_rad: observation.since_arming_s.is_none().then_some(joint_rad),
+        });
         None
     }
 
     fn answer(&mut self) -> Option<Answer> {
-        let (action, sensed_at) = lock(&self.desk).answer.take()?;
-        Some(Answer { command: self.map.command(&action), sensed_at })
+        let (action, shown) = lock(&self.desk).answer.take()?;
+        let command = match shown.unarmed_rad {
+            Some(joint_rad) => held(joint_rad, false),
+            None => self.map.command(&action),
+        };
+        Some(Answer { command, sensed_at: shown.sensed_at })
     }
 
     fn outcome(&self) -> Outcome {
@@ -181,18 +198,18 @@ impl Seat {
             return Err(Refusal::NotShown { seq, newest });
         }
         let back = usize::try_from(newest - seq).unwrap_or(usize::MAX);
-        let Some(&(at, sensed_at)) = desk.lately.iter().rev().nth(back) else {
+        let Some(&shown) = desk.lately.iter().rev().nth(back) else {
             return Err(Refusal::TooOld { seq, newest });
         };
         if seq <= answered {
             return Err(Refusal::Overtaken { seq, answered });
         }
-        let delay = now.since(at);
+        let delay = now.since(shown.at);
         desk.account.answers += 1;
         desk.account.delay_sum += delay;
         desk.account.delay_max = desk.account.delay_max.max(delay);
         desk.answered = seq;
-        desk.answer = Some((action, sensed_at));
+        desk.answer = Some((action, shown));
         Ok(())
     }
 
@@ -234,6 +251,7 @@ fn lock(desk: &Mutex<Desk>) -> MutexGuard<'_, Desk> {
 #[cfg(test)]
 mod tests {
     use xt28_machine::PerWheel;
+    use xt28_safety::Arms;
 
     use super::*;
     use crate::Attitude;
@@ -243,7 +261,7 @@ mod tests {
         Observation {
             at: SimTime::from_millis(at_ms),
             sensed_at: SimTime::from_millis(at_ms - 5),
-            since_arming_s: None,
+            since_arming_s: Some(0.0),
             located: None,
             attitude: Attitude::default(),
             stroke_m: zero,
@@ -277,6 +295,18 @@ mod tests {
         assert_eq!((account.shown, account.answers), (2, 2));
         assert_eq!(account.delay_max, Duration::from_millis(1875));
         assert_eq!(account.delay_sum, Duration::from_millis(1875 + 1750));
+    }
+
+    #[test]
+    fn an_answer_from_before_arming_moves_nothing_whenever_it_comes() {
+        let (mut policy, seat) = External::new(&Machine::xt28(), Pace::Fix);
+        policy.act(&Observation { since_arming_s: None, ..seen(125) });
+        policy.act(&seen(250));
+        for (seq, moves) in [(1, false), (2, true)] {
+            seat.answer(SimTime::from_millis(300), seq, Action([1.0; 8])).unwrap();
+            let command = policy.answer().unwrap().command;
+            assert_eq!(command == held(0.3, false), !moves, "{command:?}");
+        }
     }
 
     #[test]
@@ -320,7 +350,8 @@ mod tests {
         seat.conclude(Outcome::Reached);
         seat.answer(SimTime::from_millis(2000), 1, Action([1.0; 8])).unwrap();
         assert!(policy.answer().is_none() && seat.is_answered());
-        assert_eq!(policy.act(&seen(250)), None, "what is not armed stays so");
+        let unarmed = Observation { since_arming_s: None, ..seen(250) };
+        assert_eq!(policy.act(&unarmed), None, "what is not armed stays so");
         for drifted_rad in [0.3, 0.2] {
             let (since_arming_s, front_joint_rad) = (Some(1.0), drifted_rad);
             let armed = Observation { since_arming_s, front_joint_rad, ..seen(250) };

@@ -13,7 +13,7 @@ use super::levelling::Levelling;
 use super::path::{Path, Point};
 use super::pose_filter::PoseFilter;
 use super::steering::Steering;
-use super::{Outcome, Pace, Policy};
+use super::{Outcome, Pace, Policy, held};
 use crate::pose::wrap;
 use crate::{Observation, Pose};
 
@@ -124,8 +124,8 @@ impl Goto {
                 self.stage = self.depart(pose);
             }
             Stage::Stopping(standstill) => {
-                if standstill.is_over(seen) {
-                    self.stage = Stage::Ended(judge(pose, &self.goal));
+                if let Some(outcome) = standstill.outcome(seen, pose, &self.goal) {
+                    self.stage = Stage::Ended(outcome);
                 }
             }
             Stage::Driving { along_m, got_on, .. } => {
@@ -178,13 +178,7 @@ impl Policy for Goto {
     fn act(&mut self, seen: &Observation) -> Option<Command> {
         let dt_s = self.last_at.map_or(0.0, |last| seen.at.since(last).as_secs_f64().min(0.5));
         self.last_at = Some(seen.at);
-        let hold = Arms::Position([None; 6]);
-        let mut command = Command {
-            throttle: 0.0,
-            front_angle_rad: seen.front_joint_rad,
-            arms: hold,
-            brake: false,
-        };
+        let mut command = held(seen.front_joint_rad, false);
         if let Some(located) = &seen.located {
             let pose = self.filter.step(&located.pose, seen, dt_s);
             self.advance(seen, &pose);

@@ -1,8 +1,8 @@
 //! `hold`: armed, and nothing moves.
 
-use xt28_safety::{Arms, Command};
+use xt28_safety::Command;
 
-use super::{Outcome, Pace, Policy};
+use super::{Outcome, Pace, Policy, held};
 use crate::Observation;
 
 /// Throttle at zero, every arm and the joint held where they are.
@@ -15,12 +15,7 @@ impl Policy for Hold {
     }
 
     fn act(&mut self, observation: &Observation) -> Option<Command> {
-        Some(Command {
-            throttle: 0.0,
-            front_angle_rad: observation.front_joint_rad,
-            arms: Arms::Position([None; 6]),
-            brake: false,
-        })
+        Some(held(observation.front_joint_rad, false))
     }
 
     fn outcome(&self) -> Outcome {

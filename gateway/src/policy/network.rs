@@ -31,11 +31,11 @@ use core::time::Duration;
 use std::path::{Path, PathBuf};
 
 use xt28_machine::{Machine, SimTime};
-use xt28_safety::{Arms, Command, Limits};
+use xt28_safety::{Command, Limits};
 use xt28_terrain::Terrain;
 
 use super::arrival::{Standstill, judge, too_far};
-use super::{Outcome, Pace, Policy};
+use super::{Outcome, Pace, Policy, held};
 use crate::heights::read_heights;
 use crate::{Action, ActionMap, Observation, Pose};
 
@@ -142,16 +142,18 @@ impl Network {
         let joint_rad = seen.front_joint_rad;
         match &mut self.stage {
             // Where the joint is held from then on must be known.
-            Stage::Driving if seen.since_arming_s.is_some() && joint_rad.is_finite() => {
+            Stage::Driving if joint_rad.is_finite() => {
                 if let Some(outcome) = too_far(&located.pose, goal) {
                     self.stage = Stage::Ended { outcome, joint_rad };
-                } else if judge(&located.pose, goal) == Outcome::Reached {
+                } else if seen.since_arming_s.is_some()
+                    && judge(&located.pose, goal) == Outcome::Reached
+                {
                     self.stage = Stage::Stopping { standstill: Standstill::default(), joint_rad };
                 }
             }
             Stage::Stopping { standstill, joint_rad } => {
-                if standstill.is_over(seen) {
-                    let (outcome, joint_rad) = (judge(&located.pose, goal), *joint_rad);
+                let joint_rad = *joint_rad;
+                if let Some(outcome) = standstill.outcome(seen, &located.pose, goal) {
                     self.stage = Stage::Ended { outcome, joint_rad };
                 }
             }
@@ -197,15 +199,14 @@ impl Policy for Network {
     /// then, and the safety kernel stops the machine.
     fn act(&mut self, seen: &Observation) -> Option<Command> {
         self.advance(seen);
-        let arms = Arms::Position([None; 6]);
-        let hold =
-            |front_angle_rad, brake| Some(Command { throttle: 0.0, front_angle_rad, arms, brake });
         match self.stage {
-            Stage::Stopping { joint_rad, .. } => hold(joint_rad, false),
-            Stage::Ended { joint_rad, .. } => hold(joint_rad, true),
+            Stage::Stopping { joint_rad, .. } => Some(held(joint_rad, false)),
+            Stage::Ended { joint_rad, .. } => Some(held(joint_rad, true)),
             Stage::Driving if self.rate.is_due(self.asked_at, seen.at) => {
                 self.asked_at = Some(seen.at);
-                self.asked(seen)
+                let asked = self.asked(seen)?;
+                let moves = seen.since_arming_s.is_some();
+                Some(if moves { asked } else { held(seen.front_joint_rad, false) })
             }
             Stage::Driving => None,
         }
@@ -286,11 +287,12 @@ mod tests {
             let said = said(&mut network, &seen);
             [said[0], said[2]].map(|number| (1e9 * number).round() / 1e9)
         };
-        assert_eq!(older_and_newer(0, None), [0.0; 2]);
+        older_and_newer(0, None);
         assert_eq!(older_and_newer(125, Some(0.0)), [0.0; 2]);
         assert_eq!(older_and_newer(250, Some(0.125)), [0.0, 0.5]);
         assert_eq!(older_and_newer(375, Some(0.25)), [0.5; 2]);
-        assert_eq!(older_and_newer(500, None), [0.0; 2], "stopped");
+        older_and_newer(500, None);
+        assert_eq!(older_and_newer(625, Some(0.0)), [0.0; 2], "stopped in between");
     }
 
     #[test]
@@ -325,7 +327,8 @@ mod tests {
         for (ends_at, outcome) in [(near, "reached"), (beyond, "failed")] {
             let mut network = load(FILE, GOAL).unwrap();
             let unarmed = Observation { since_arming_s: None, ..seen_at(near, 0, 0.8) };
-            assert!(network.act(&unarmed).is_some(), "nothing moves yet");
+            let answer = network.act(&unarmed);
+            assert_eq!(answer, Some(held(unarmed.front_joint_rad, false)), "nothing moves yet");
             assert_eq!(network.outcome(), Outcome::Running);
             let mut seen = seen_at(near, 125, 0.8);
             let command = network.act(&seen).unwrap();
@@ -342,12 +345,26 @@ mod tests {
     }
 
     #[test]
+    fn a_sensor_that_hangs_keeps_no_drive_from_its_end() {
+        let near = Pose { east_m: 3.9, north_m: -0.8, heading_rad: 0.1 };
+        let mut network = load(FILE, GOAL).unwrap();
+        let answers = (0..100).map(|i| network.act(&seen_at(near, 125 * i, 0.1)).unwrap());
+        // It lets go of the throttle at once, and asks for the brake after ten seconds.
+        assert_eq!(answers.filter(|command| !command.brake).count(), 81);
+        let Outcome::Failed(why) = network.outcome() else { panic!("it never stands") };
+        assert!(why.contains("still read 0.10 m/s"), "{why}");
+    }
+
+    #[test]
     fn no_network_drives_to_a_goal_of_another_site() {
         let away = Some(Pose { east_m: 9e5, ..Pose::default() });
-        let mut network = load(FILE, away).unwrap();
-        assert!(network.act(&seen()).unwrap().brake);
-        let Outcome::Failed(why) = network.outcome() else { panic!("it is too far") };
-        assert!(why.contains("900000 m from the machine") && why.contains("--origin"), "{why}");
+        for since_arming_s in [None, Some(0.0)] {
+            let mut network = load(FILE, away).unwrap();
+            let seen = Observation { since_arming_s, ..seen() };
+            assert!(network.act(&seen).unwrap().brake);
+            let Outcome::Failed(why) = network.outcome() else { panic!("it is too far") };
+            assert!(why.contains("900000 m from the machine") && why.contains("--origin"), "{why}");
+        }
     }
 
     #[test]

@@ -273,6 +273,7 @@ impl Bench {
             fix_ok: true,
             position_valid: true,
             heading_valid: !self.faults.gnss_headless,
+            moving_base: true,
             carrier: CarrierSolution::Fixed,
             ..NavRelPosNed::default()
         };

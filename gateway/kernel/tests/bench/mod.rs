@@ -19,7 +19,17 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
+    /// Disarmed, with readings that have been steady for long enough.
     pub(crate) fn new() -> Self {
+        let mut bench = Self::at_power_up();
+        for _ in 0..=LIMITS.steady_ns / TICK_NS {
+            bench.run(Order::None, coast());
+        }
+        bench
+    }
+
+    /// Before the first step.
+    pub(crate) fn at_power_up() -> Self {
         let measured = Measured {
             stroke_m: [0.17; 6],
             front_angle_rad: 0.0,

@@ -11,6 +11,7 @@ use ecu_emu::{
     Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, UnheardEffect, Wire,
     write_truth_row,
 };
+use xt28_bus::socket_can::SocketError;
 use xt28_bus::{Bus, BusState, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
@@ -71,9 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         }
         wires.listen(now, &mut emulator)?;
         emulator.tick(now, &mut out);
-        for frame in out.frames() {
-            bus.send(now, frame)?;
-        }
+        send(&mut bus, now, &out, &mut watch)?;
         wires.send(now, &emulator)?;
         bytes.clear();
         emulator.take_gnss(&mut bytes);
@@ -88,6 +87,26 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     tell(schedule);
     if let frames @ 1.. = u64::from(bus.receive_drops().unwrap_or(0)) + wires.receive_drops() {
         tell(format_args!("{frames} frames came and were lost: nobody read them in time"));
+    }
+    Ok(())
+}
+
+/// Gives the frames of a tick to the interface. One that takes none, as where nobody is there to acknowledge them
+/// yet, loses them: the machine goes on, as its ECUs would.
+fn send(
+    bus: &mut SocketCan,
+    now: SimTime,
+    out: &Outbox,
+    watch: &mut Watch,
+) -> Result<(), SocketError> {
+    for frame in out.frames() {
+        match bus.send(now, frame) {
+            Err(SocketError::BacklogFull { .. }) => {
+                bus.discard_backlog();
+                watch.note_full();
+            }
+            sent => sent?,
+        }
     }
     Ok(())
 }

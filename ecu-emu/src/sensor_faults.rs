@@ -265,7 +265,7 @@ impl FromStr for SensorFault {
             from_s: number(from)?,
             to_s: to.map(number).transpose()?,
         };
-        fault.check().map(|()| fault)
+        fault.check().map_err(|why| refuse(&why)).map(|()| fault)
     }
 }
 

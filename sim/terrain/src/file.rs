@@ -39,7 +39,7 @@ impl TerrainSpec {
         let text = std::fs::read_to_string(path).map_err(|source| TerrainError::Read {
             path: path.to_owned(),
             what: "terrain file",
-            remedy: "give --terrain an existing file",
+            remedy: "give an existing, readable file",
             source,
         })?;
         Self::parse(&text, path)

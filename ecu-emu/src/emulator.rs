@@ -111,11 +111,24 @@ impl Emulator {
     #[must_use]
     pub fn new(config: &EmulatorConfig) -> Self {
         let mut emulator = Self::set_down(config);
-        for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
-            let engine_rpm = emulator.engine.speed_rpm();
-            let setting = wiring::setting(config, emulator.plant.state(), engine_rpm);
-            emulator.plant.step(&setting);
+        let engine_rpm = emulator.engine.speed_rpm();
+        let set = |plant: &mut dyn Track| {
+            for _ in 0..SETTLE.as_nanos() / STEP.as_nanos() {
+                plant.step(&wiring::setting(config, plant.state(), engine_rpm));
+            }
+        };
+        let arms = PerWheel::default();
+        if config.effects.arms == arms {
+            set(emulator.plant.as_mut());
+            return emulator;
         }
+        // By hand, not by the valves: those that are late, dead in the middle or leak set no arm, and what they were
+        // told last would work on.
+        let sound =
+            EmulatorConfig { effects: Effects { arms, ..config.effects }, ..config.clone() };
+        let mut plant = Self::set_down(&sound).plant;
+        set(plant.as_mut());
+        emulator.plant.place(plant.state(), &Actuation::idle(engine_rpm));
         emulator
     }
 

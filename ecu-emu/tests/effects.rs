@@ -213,3 +213,40 @@ fn jitter_within_the_deadline_does_no_harm_and_beyond_it_stops_the_machine() {
     let much = speed(&with("name = \"command-jitter\"\nlatest_s = 1.0"));
     assert!(most(&much, 0.0) < 3.0, "silence of three periods is a safe stop");
 }
+
+/// However late, lame or leaky its valves: somebody set its arms by hand, and nothing told to a valve then is left to
+/// work on. What sags or creeps by itself does so from the start on.
+#[test]
+fn a_machine_whose_valves_are_bad_begins_with_its_arms_as_they_were_set() {
+    for (effect, creeps_m) in [
+        ("name = \"arm-delay\"\ndelay_s = 1.0", 0.001),
+        (
+            "name = \"arm-delay\"\ndelay_s = 0.3\n[[effect]]\nname = \"valve-gain\"\nfactor = 3.0",
+            0.001,
+        ),
+        ("name = \"valve-lag\"\ntime_constant_s = 2.0", 0.001),
+        ("name = \"valve-deadband\"\ndeadband = 0.3", 0.001),
+        ("name = \"valve-hysteresis\"\nwidth = 0.3", 0.001),
+        ("name = \"accumulator-gas\"\nshare = 1.0", 0.004),
+        ("name = \"seal-stiction\"\ncoulomb_n = 4000.0", 0.001),
+        ("name = \"leakage-drift\"\nrate_m_s = 0.002", 0.008),
+    ] {
+        let effects = effects(effect);
+        let nominal = EmulatorConfig::new(Machine::xt28(), Terrain::Flat, Some(5));
+        let mut emulator = Emulator::new(&EmulatorConfig { effects, ..nominal });
+        let (mut out, mut now) = (Outbox::with_capacity(64), SimTime::ZERO);
+        while now.as_secs_f64() < 3.0 {
+            let truth = emulator.truth();
+            for (wheel, stroke_m) in truth.stroke_m.iter() {
+                let off_m = (stroke_m - 0.17).abs();
+                assert!(off_m < creeps_m + 0.001, "{effect}: {wheel} at {stroke_m} m, {now}");
+            }
+            let loads_n = truth.ground_force_n;
+            let off_n = (loads_n.sum() - 166.8e3).abs();
+            assert!(now < SimTime::from_millis(500) || off_n < 2e3, "{effect}: {loads_n:?}");
+            emulator.tick(now, &mut out);
+            out.clear();
+            now += TICK;
+        }
+    }
+}

@@ -9,17 +9,20 @@ use super::{DT_S, Samples, Signals};
 /// How long blocks remember what was before the log, s: the slowest that all machines have, the filter of the roll,
 /// keeps a twelfth of it then (2 s, facts 5).
 const REMEMBERS_S: f64 = 5.0;
-/// What is looked at to tell whether the machine moves as its log begins, s.
-const BEGINS_S: f64 = 0.5;
+/// What is looked at to tell whether the machine moves as its log begins, s: one that is armed a moment later and sets
+/// out stood until then.
+const BEGINS_S: f64 = 0.15;
+/// What is looked at to tell whether its attitude is settled, which a slow filter shows later, s.
+const SETTLED_S: f64 = 0.5;
 /// Throttle that asks for nothing, at the most (assumed).
 const ASKS: f64 = 0.02;
 /// How far a valve of an arm is open in the mean that holds a stance or begins a sway, at the most (assumed).
 const OPENS: f64 = 0.1;
 /// What the wheels of a machine that stands turn at together, at the most, rad/s: 4 cm/s at the rim (assumed).
 const STANDS_RAD_S: f64 = 0.05;
-/// What a joint that stands turns by meanwhile, at the most, rad: 0.7 deg (assumed).
-const TURNS_RAD: f64 = 0.012;
-/// What the attitude changes by meanwhile at the most that no filter has yet to settle on, rad, while no stroke reads
+/// What a joint that stands turns by meanwhile, at the most, rad: 0.2 deg (assumed).
+const TURNS_RAD: f64 = 0.004;
+/// What the attitude changes by at the most that no filter has yet to settle on, rad, while no stroke reads
 /// more than its next step or two: 0.1 deg (assumed).
 const SETTLES_RAD: f64 = 0.002;
 const SWINGS_M: f64 = 0.002;
@@ -34,30 +37,34 @@ impl Signals {
     /// Whether the machine moves, or is asked to drive, as the log begins, or did so just before.
     fn begins_underway(&self) -> bool {
         let mean = |samples: &[f64]| {
-            let first = first(samples);
+            let first = first(samples, BEGINS_S);
             first.iter().sum::<f64>() / first.len().max(1) as f64
         };
         let rolls_rad_s = |i| self.mean_wheel_speed_rad_s(i).abs();
-        let any = |all: &[Samples], most: f64| all.iter().any(|samples| span(samples) > most);
+        let any = |all: &[Samples], within_s: f64, most: f64| {
+            all.iter().any(|samples| span(samples, within_s) > most)
+        };
         mean(&self.throttle).abs() > ASKS
-            || (0..first(&self.throttle).len()).any(|i| rolls_rad_s(i) > STANDS_RAD_S)
+            || (0..first(&self.throttle, BEGINS_S).len()).any(|i| rolls_rad_s(i) > STANDS_RAD_S)
             || self.opening.iter().any(|(_, opening)| mean(opening).abs() > OPENS)
-            || any(&self.joint_rad, TURNS_RAD)
-            || [&self.roll_rad, &self.pitch_rad].into_iter().any(|angle| span(angle) > SETTLES_RAD)
-                && !any(&self.stroke_reading_m.0, SWINGS_M)
+            || any(&self.joint_rad, BEGINS_S, TURNS_RAD)
+            || [&self.roll_rad, &self.pitch_rad]
+                .into_iter()
+                .any(|angle| span(angle, SETTLED_S) > SETTLES_RAD)
+                && !any(&self.stroke_reading_m.0, SETTLED_S, SWINGS_M)
     }
 }
 
 /// The first of the samples.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn first(samples: &[f64]) -> &[f64] {
-    &samples[..samples.len().min((BEGINS_S / DT_S) as usize)]
+fn first(samples: &[f64], within_s: f64) -> &[f64] {
+    &samples[..samples.len().min((within_s / DT_S) as usize)]
 }
 
 /// How far the first of the samples lie apart.
-fn span(samples: &[f64]) -> f64 {
+fn span(samples: &[f64], within_s: f64) -> f64 {
     let widen = |[low, high]: [f64; 2], x: &f64| [low.min(*x), high.max(*x)];
-    let [low, high] = first(samples).iter().fold([f64::MAX, f64::MIN], widen);
+    let [low, high] = first(samples, within_s).iter().fold([f64::MAX, f64::MIN], widen);
     high - low
 }
 
@@ -74,7 +81,7 @@ mod tests {
             s.settles_s()
         };
         assert_eq!(settles_s(&|_| ()), 0.0);
-        assert_eq!(settles_s(&|s| s.throttle[100..].fill(0.5)), 0.0, "it sets out later");
+        assert_eq!(settles_s(&|s| s.throttle[20..].fill(0.5)), 0.0, "it sets out later");
         assert_eq!(settles_s(&|s| s.throttle.fill(-0.5)), REMEMBERS_S);
         let rolls = |s: &mut Signals, rad_s: &[f64; 6]| {
             s.wheel_speed_rad_s
@@ -87,7 +94,7 @@ mod tests {
         assert_eq!(settles_s(&|s| rolls(s, &[0.2, 0.0, 0.0, 0.0, 0.0, 0.0])), 0.0, "one misreads");
         assert_eq!(settles_s(&|s| s.opening.0[3].fill(0.05)), 0.0, "it holds its arms");
         assert_eq!(settles_s(&|s| s.opening.0[3].fill(0.15)), REMEMBERS_S);
-        assert_eq!(settles_s(&|s| s.joint_rad[0][20..].fill(0.02)), REMEMBERS_S);
+        assert_eq!(settles_s(&|s| s.joint_rad[0][10..].fill(0.02)), REMEMBERS_S);
         let leans = |s: &mut Signals, swings_m: f64| {
             s.pitch_rad[20..].fill(0.004);
             s.stroke_reading_m.0[3][20..].fill(swings_m);

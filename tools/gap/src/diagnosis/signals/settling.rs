@@ -22,9 +22,10 @@ const OPENS: f64 = 0.1;
 const STANDS_RAD_S: f64 = 0.05;
 /// What a joint that stands turns by meanwhile, at the most, rad: 0.2 deg (assumed).
 const TURNS_RAD: f64 = 0.004;
-/// What the attitude changes by at the most that no filter has yet to settle on, rad, while no stroke reads
-/// more than its next step or two: 0.1 deg (assumed).
-const SETTLES_RAD: f64 = 0.002;
+/// What the attitude changes by at the most that no filter has yet to settle on, rad, while nothing is asked of the
+/// drive and no stroke reads more than its next step or two: 0.09 deg (assumed), from its mean over the first third to
+/// that over the last, as a reading may be as noisy.
+const SETTLES_RAD: f64 = 0.0015;
 const SWINGS_M: f64 = 0.002;
 
 impl Signals {
@@ -36,10 +37,7 @@ impl Signals {
 
     /// Whether the machine moves, or is asked to drive, as the log begins, or did so just before.
     fn begins_underway(&self) -> bool {
-        let mean = |samples: &[f64]| {
-            let first = first(samples, BEGINS_S);
-            first.iter().sum::<f64>() / first.len().max(1) as f64
-        };
+        let mean = |samples: &[f64]| mean(first(samples, BEGINS_S));
         let rolls_rad_s = |i| self.mean_wheel_speed_rad_s(i).abs();
         let any = |all: &[Samples], within_s: f64, most: f64| {
             all.iter().any(|samples| span(samples, within_s) > most)
@@ -48,9 +46,10 @@ impl Signals {
             || (0..first(&self.throttle, BEGINS_S).len()).any(|i| rolls_rad_s(i) > STANDS_RAD_S)
             || self.opening.iter().any(|(_, opening)| mean(opening).abs() > OPENS)
             || any(&self.joint_rad, BEGINS_S, TURNS_RAD)
-            || [&self.roll_rad, &self.pitch_rad]
-                .into_iter()
-                .any(|angle| span(angle, SETTLED_S) > SETTLES_RAD)
+            || !first(&self.throttle, SETTLED_S).iter().any(|throttle| throttle.abs() > ASKS)
+                && [&self.roll_rad, &self.pitch_rad]
+                    .into_iter()
+                    .any(|angle| change(first(angle, SETTLED_S)).abs() > SETTLES_RAD)
                 && !any(&self.stroke_reading_m.0, SETTLED_S, SWINGS_M)
     }
 }
@@ -59,6 +58,16 @@ impl Signals {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn first(samples: &[f64], within_s: f64) -> &[f64] {
     &samples[..samples.len().min((within_s / DT_S) as usize)]
+}
+
+fn mean(samples: &[f64]) -> f64 {
+    samples.iter().sum::<f64>() / samples.len().max(1) as f64
+}
+
+/// From the mean of the first third to that of the last.
+fn change(samples: &[f64]) -> f64 {
+    let third = samples.len() / 3;
+    mean(&samples[samples.len() - third..]) - mean(&samples[..third])
 }
 
 /// How far the first of the samples lie apart.
@@ -101,6 +110,15 @@ mod tests {
         };
         assert_eq!(settles_s(&|s| leans(s, 0.001)), REMEMBERS_S, "a filter that settles");
         assert_eq!(settles_s(&|s| leans(s, 0.005)), 0.0, "arms that let it lean");
+        let shakes = |s: &mut Signals| {
+            s.pitch_rad.iter_mut().step_by(2).for_each(|pitch_rad| *pitch_rad += 0.004);
+        };
+        assert_eq!(settles_s(&shakes), 0.0, "an attitude that is noisy");
+        let sets_out = |s: &mut Signals| {
+            s.throttle[30..].fill(0.5);
+            leans(s, 0.0);
+        };
+        assert_eq!(settles_s(&sets_out), 0.0, "a machine that squats as it sets out");
         let short = |s: &mut Signals| {
             s.throttle.fill(0.5);
             s.len = 300;

@@ -113,13 +113,16 @@ impl Steering {
     /// rest go no further from the joint than the largest torque twists it.
     pub fn turn(&self, state: &mut SteeringState, joint: HingeMotion, rate_rad_s: f64, dt_s: f64) {
         let play = &self.effects.backlash;
-        let reach = self.torque_max_nm / self.stiffness_nm + 0.5 * play.width_rad;
+        let half_rad = 0.5 * play.width_rad;
+        let reach = self.torque_max_nm / self.stiffness_nm;
         // Where the joint will be: a limit around where it was would give way to its own motion.
         let angle = joint.angle_rad + joint.rate_rad_s * dt_s;
-        state.oil_rad = (state.oil_rad + rate_rad_s * dt_s)
-            .clamp(-self.angle_max_rad, self.angle_max_rad)
-            .clamp(angle - reach, angle + reach);
-        state.rest_rad = play.held_rad(state.rest_rad, state.oil_rad);
+        let led_rad =
+            (state.oil_rad + rate_rad_s * dt_s).clamp(-self.angle_max_rad, self.angle_max_rad);
+        // The rest makes the torque, so the valve bounds the rest: a bound on the oil would let the play
+        // that lies between them add to the torque, where the joint leaves the oil behind.
+        state.rest_rad = play.held_rad(state.rest_rad, led_rad).clamp(angle - reach, angle + reach);
+        state.oil_rad = led_rad.clamp(state.rest_rad - half_rad, state.rest_rad + half_rad);
     }
 
     /// A whole step of a joint alone, which gets all the oil that it asks for.
@@ -194,6 +197,35 @@ mod tests {
         (0..1000).for_each(|_| steering.step(&mut state, &input, DT_S));
         let torque_nm = state.rest_rad * steering.stiffness_nm();
         assert!((torque_nm - machine.articulation.torque_max_nm).abs() < 1e-6);
+    }
+
+    /// Whether the valve pushes or the ground does, and whichever side of the play the oil is on.
+    #[test]
+    fn a_joint_with_play_takes_no_more_than_its_torque_either_way() {
+        let max_nm = Machine::xt28().articulation.torque_max_nm;
+        for (width_rad, side) in [(0.01, 1.0), (0.01, -1.0), (0.2, 1.0), (0.2, -1.0)] {
+            let backlash = SteerBacklash { width_rad };
+            let steering = steering(SteeringEffects { backlash, ..Default::default() });
+            let mut state = steering.straight(DT_S);
+            let mut torque_nm = |opening: f64, angle_rad: f64| {
+                let input = SteeringInput { opening, angle_rad, rate_rad_s: 0.0 };
+                steering.step(&mut state, &input, DT_S);
+                let nm = steering.stiffness_nm() * (state.rest_rad - angle_rad);
+                assert!(nm.abs() < max_nm + 1e-6, "play of {width_rad} rad: {nm} Nm");
+                nm
+            };
+            // Blocked, the valve pushes one way, then the other.
+            for opening in [side, -side] {
+                let last_nm = (0..1000).map(|_| torque_nm(opening, 0.0)).last().unwrap();
+                assert!((last_nm - opening * max_nm).abs() < 1e-6, "{last_nm} Nm");
+            }
+            // With the valve shut, the ground turns it against what holds it, then back again.
+            let there = (0..1000).map(|i| side * 1e-3 * f64::from(i));
+            let last_nm = there.clone().map(|rad| torque_nm(0.0, rad)).last().unwrap();
+            assert!((last_nm + side * max_nm).abs() < 1e-6, "{last_nm} Nm");
+            let last_nm = there.rev().map(|rad| torque_nm(0.0, rad)).last().unwrap();
+            assert!((last_nm - side * max_nm).abs() < 1e-6, "{last_nm} Nm");
+        }
     }
 
     #[test]

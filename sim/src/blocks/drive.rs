@@ -46,8 +46,8 @@ pub struct Drive {
 /// What the transmission remembers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveState {
-    asked_rad_s: [DelayLine; 2],
-    lagging_rad_s: [Lag; 2],
+    asked_ratio: [DelayLine; 2],
+    lagging_ratio: [Lag; 2],
     /// What each circuit was to do in the last step: of a lag with a lead, not the lag's output alone.
     target_rad_s: [f64; 2],
     felt_power_w: Lag,
@@ -118,7 +118,7 @@ impl Drive {
     #[must_use]
     pub fn at_rest(&self, dt_s: f64) -> DriveState {
         let line = DelayLine::new(self.effects.throttle_delay.delay_s, dt_s, 0.0);
-        DriveState { asked_rad_s: [line.clone(), line], ..DriveState::default() }
+        DriveState { asked_ratio: [line.clone(), line], ..DriveState::default() }
     }
 
     /// Torques and pressures now; the state goes on by `dt_s` s.
@@ -127,7 +127,7 @@ impl Drive {
         let governed_rpm = input.engine_speed_rpm;
         let felt_w = state.felt_power_w.step(state.power_w, ENGINE_ANSWER_S, dt_s);
         let speed_share = droop.speed_share(felt_w);
-        // Displacements come late; what an engine droops by is in the oil at once.
+        // Displacements come late; what the engine's speed changes by is in the oil at once.
         let targets = self.targets_rad_s(state, input, dt_s).map(|target| target * speed_share);
         let engine_speed_rpm = governed_rpm * speed_share;
         let input = &DriveInput { engine_speed_rpm, ..*input };
@@ -163,26 +163,44 @@ impl Drive {
         out
     }
 
-    /// What each circuit is to do, once displacement has become speed, rad/s.
+    /// What each circuit is to do at the governor's speed, once displacement has become speed, rad/s.
     fn targets_rad_s(&self, state: &mut DriveState, input: &DriveInput, dt_s: f64) -> [f64; 2] {
         let e = &self.effects;
         state.target_rad_s = core::array::from_fn(|c| {
-            let asked = self.target_rad_s(c, input);
-            let arrived = state.asked_rad_s[c].step(asked, e.throttle_delay.delay_s, dt_s);
-            e.lag.follow(&mut state.lagging_rad_s[c], arrived, dt_s)
+            let asked = self.ratio(c, input);
+            let arrived = state.asked_ratio[c].step(asked, e.throttle_delay.delay_s, dt_s);
+            let ratio = e.lag.follow(&mut state.lagging_ratio[c], arrived, dt_s);
+            // Where nothing is late it is what is asked to the bit, which rounds in another order.
+            if ratio == asked {
+                self.target_rad_s(c, input)
+            } else {
+                self.full_rad_s(input) * ratio
+            }
         });
         state.target_rad_s
     }
 
     /// Mean wheel speed that pump `c` asks of its circuit, rad/s (facts 4.4: linear in throttle).
     fn target_rad_s(&self, c: usize, input: &DriveInput) -> f64 {
-        let motors: f64 = self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum();
-        if motors <= 0.0 {
-            return 0.0;
-        }
-        let full = self.speed_full_rad_s * FULL_DISPLACEMENT_SHARE;
+        let (motors, full) = (self.motors(c, input), self.full_rad_s(input));
+        if motors <= 0.0 { 0.0 } else { full * input.pump_displacement[c] * 3.0 / motors }
+    }
+
+    /// Displacement of pump `c` over that of its motors, as a share of what it is at full displacement of both.
+    fn ratio(&self, c: usize, input: &DriveInput) -> f64 {
+        let motors = self.motors(c, input);
+        if motors <= 0.0 { 0.0 } else { input.pump_displacement[c] * 3.0 / motors }
+    }
+
+    /// Displacement of the motors of circuit `c` together, 0 to 3.
+    fn motors(&self, c: usize, input: &DriveInput) -> f64 {
+        self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum()
+    }
+
+    /// Mean wheel speed at full displacement of pump and motors, rad/s.
+    fn full_rad_s(&self, input: &DriveInput) -> f64 {
         let engine = input.engine_speed_rpm / self.engine_speed_rpm;
-        full * engine * input.pump_displacement[c] * 3.0 / motors
+        self.speed_full_rad_s * FULL_DISPLACEMENT_SHARE * engine
     }
 
     /// Displacement-weighted mean speed of circuit `c`: what the oil flow sees, rad/s.
@@ -204,7 +222,7 @@ impl Drive {
         input: &DriveInput,
         torque_nm: &mut PerWheel<f64>,
     ) {
-        let motors: f64 = self.circuits[c].iter().map(|&w| input.motor_displacement[w]).sum();
+        let motors = self.motors(c, input);
         if motors <= 0.0 {
             return;
         }
@@ -345,20 +363,26 @@ mod tests {
         assert!((next.wheel_torque_nm.sum() / out.wheel_torque_nm.sum() - 1.0).abs() < 1e-6);
     }
 
-    /// A throttle that comes late delays displacements; an engine that gives way is felt at once.
+    /// A throttle that comes late delays displacements; an engine that gives way, or whose governor is set
+    /// anew, is felt at once.
     #[test]
-    fn an_engine_s_droop_does_not_wait_for_the_throttle() {
+    fn an_engine_s_speed_does_not_wait_for_the_throttle() {
         let engine_droop = EngineDroop { droop_per_w: 5.0e-6, power_factor: 1.0 };
-        let loaded = |delay_s: f64| {
+        let loaded = |delay_s: f64, time_constant_s: f64| {
             let throttle_delay = ThrottleDelay { delay_s };
-            let effects = DriveEffects { engine_droop, throttle_delay, ..DriveEffects::default() };
-            let drive = with(effects);
+            let lag = DriveLag { time_constant_s, lead_s: 0.0 };
+            let drive = with(DriveEffects { engine_droop, throttle_delay, lag });
             let mut state = drive.resumed(&input(1.0, 0.66), &PerWheel::splat(2e3), DT_S);
-            let mut after = || drive.step(&mut state, &input(1.0, 0.6), DT_S);
-            (0..60).map(|_| after().wheel_torque_nm.sum()).collect::<Vec<f64>>()
+            let mut after = |engine_speed_rpm| {
+                let input = DriveInput { engine_speed_rpm, ..input(1.0, 0.6) };
+                drive.step(&mut state, &input, DT_S).wheel_torque_nm.sum()
+            };
+            (0..60).map(|i| after(if i < 30 { 1200.0 } else { 1300.0 })).collect::<Vec<f64>>()
         };
-        for (late_nm, prompt_nm) in loaded(0.5).iter().zip(loaded(0.0)) {
-            assert!((late_nm / prompt_nm - 1.0).abs() < 1e-6, "{late_nm}, not {prompt_nm} Nm");
+        for late in [loaded(0.5, 0.0), loaded(0.0, 0.5)] {
+            for (late_nm, prompt_nm) in late.iter().zip(loaded(0.0, 0.0)) {
+                assert!((late_nm / prompt_nm - 1.0).abs() < 1e-6, "{late_nm}, not {prompt_nm} Nm");
+            }
         }
     }
 

@@ -17,14 +17,15 @@ impl Drive {
         let delay_s = self.effects.throttle_delay.delay_s;
         let power_w = torque_nm.iter().map(|(w, nm)| nm * input.wheel_speed_rad_s[w]).sum();
         let share = self.effects.engine_droop.speed_share(power_w);
+        let ratios = [0, 1].map(|c| self.ratio(c, input));
         let targets = [0, 1].map(|c| self.target_rad_s(c, input));
         let held_nm = [0, 1].map(|c| {
             let circuit_nm = self.circuits[c].iter().map(|&w| torque_nm[w]).sum::<f64>() / 3.0;
             circuit_nm - self.circuit_gain_nms * (share * targets[c] - self.mean_rad_s(c, input))
         });
         DriveState {
-            asked_rad_s: targets.map(|target| DelayLine::new(delay_s, dt_s, target)),
-            lagging_rad_s: targets.map(Lag::new),
+            asked_ratio: ratios.map(|ratio| DelayLine::new(delay_s, dt_s, ratio)),
+            lagging_ratio: ratios.map(Lag::new),
             target_rad_s: targets,
             felt_power_w: Lag::new(power_w),
             power_w,

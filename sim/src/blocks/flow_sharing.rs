@@ -7,7 +7,8 @@ use crate::effects::PumpFlowLimit;
 /// Oil that cylinders and joints take for their speeds, and how much of it the pump delivers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowSharing {
-    pump: PumpFlowLimit,
+    /// The most that the pump delivers, m³/s; `None` where it never runs short.
+    limit_m3_s: Option<f64>,
     area_bore_m2: f64,
     area_rod_m2: f64,
     joint_m3_rad: f64,
@@ -17,15 +18,19 @@ impl FlowSharing {
     /// The pump of this machine. Nominal: it always delivers enough (paper 3.2).
     #[must_use]
     pub const fn new(machine: &Machine, pump: PumpFlowLimit) -> Self {
-        let a = &machine.arms;
-        // Assumed: the pressure that gives a cylinder its largest force gives a joint its torque.
-        let pressure_max_pa = a.force_max_n / a.area_bore_m2;
         Self {
-            pump,
-            area_bore_m2: a.area_bore_m2,
-            area_rod_m2: a.area_rod_m2,
-            joint_m3_rad: machine.articulation.torque_max_nm / pressure_max_pa,
+            limit_m3_s: pump.on(machine),
+            area_bore_m2: machine.arms.area_bore_m2,
+            area_rod_m2: machine.arms.area_rod_m2,
+            joint_m3_rad: Self::joint_m3_rad(machine),
         }
+    }
+
+    /// Oil that the cylinders of a joint take for its turning, m³/rad.
+    pub(crate) const fn joint_m3_rad(machine: &Machine) -> f64 {
+        // Assumed: the pressure that gives a cylinder its largest force gives a joint its torque.
+        let pressure_max_pa = machine.arms.force_max_n / machine.arms.area_bore_m2;
+        machine.articulation.torque_max_nm / pressure_max_pa
     }
 
     /// Flow into a cylinder that extends at `speed_m_s`, or into its rod side where negative, m³/s.
@@ -43,7 +48,7 @@ impl FlowSharing {
     /// Share of its speed that every consumer gets while `demand_m3_s` is asked, 0 to 1.
     #[must_use]
     pub fn share(&self, demand_m3_s: f64) -> f64 {
-        self.pump.share(demand_m3_s)
+        PumpFlowLimit::share(self.limit_m3_s, demand_m3_s)
     }
 }
 
@@ -70,7 +75,7 @@ mod tests {
             + 2.0 * flow.joint_m3_s(rate_rad_s);
         let least = PumpFlowLimit { flow_m3_s: PumpFlowLimit::default().flow_m3_s * (1.0 - 1e-9) };
         assert_eq!(flow.share(all_m3_s), 1.0);
-        assert_eq!(least.share(all_m3_s), 1.0);
+        assert_eq!(FlowSharing::new(&machine, least).share(all_m3_s), 1.0);
     }
 
     /// Both ends of the balance: what is delivered is what the pump gives.

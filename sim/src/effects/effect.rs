@@ -154,11 +154,11 @@ impl Parameter {
         }
     }
 
-    /// Value at which the effect is not there on this machine: what its file says of the same number, or
-    /// else [`Self::neutral`].
+    /// Value at which the effect is not there on this machine, and from which it sets in: what its file says
+    /// of the same number or makes of it, or else [`Self::neutral`].
     #[must_use]
     pub fn neutral_on(&self, machine: &Machine) -> f64 {
-        self.get(&Effects::none_on(machine), Scope::All)
+        self.get(&Effects::onset_on(machine), Scope::All)
     }
 
     /// Whether it can be off to one side only: neutral is an end of its range, as of a delay.

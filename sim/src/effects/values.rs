@@ -38,7 +38,13 @@ impl Effects {
     pub fn none_on(machine: &Machine) -> Self {
         let soft_tyre = SoftTyre::of(machine);
         let wheels = PerWheel::splat(WheelEffects { soft_tyre, ..WheelEffects::default() });
-        Self { wheels, pump_flow: PumpFlowLimit::ample_on(machine), ..Self::default() }
+        Self { wheels, ..Self::default() }
+    }
+
+    /// The values from which each effect sets in on this machine as its severity grows. They are those of
+    /// no effect, but that a pump which never runs short has no flow to begin with.
+    pub(super) fn onset_on(machine: &Machine) -> Self {
+        Self { pump_flow: PumpFlowLimit::least_ample_on(machine), ..Self::none_on(machine) }
     }
 }
 

@@ -312,8 +312,8 @@ impl Machine {
             let found = [&self.wheels.circuit_1[..], &self.wheels.circuit_2[..]].concat().join(" ");
             return Err(MachineError::Circuits { path: path.to_owned(), found });
         }
-        let fault = range::too_low(self).or_else(|| range::misplaced(self));
-        let fault = fault.or_else(|| range::unhinged(self));
+        let fault = range::too_low(self).or_else(|| range::unusable(self));
+        let fault = fault.or_else(|| range::misplaced(self)).or_else(|| range::unhinged(self));
         let fault = fault.or_else(|| range::at_odds(self)).or_else(|| range::too_light(self));
         let fault = fault.or_else(|| self.levelling.fault());
         if let Some((key, value, must)) = fault {

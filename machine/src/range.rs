@@ -1,6 +1,8 @@
 //! What the numbers of a machine file can be, beyond their types.
 
-use crate::Machine;
+use core::f64::consts::PI;
+
+use crate::{ArmPose, Machine};
 
 /// Nothing of a machine is further from zero, whatever its unit (assumed): the stiffest is 8e6 N/m.
 const MAGNITUDE_MAX: f64 = 1e9;
@@ -8,6 +10,14 @@ const MAGNITUDE_MAX: f64 = 1e9;
 const LENGTH_MAX_M: f64 = 100.0;
 /// Least lever of a cylinder about its arm's pivot, m (assumed): with none it moves nothing.
 const LEVER_MIN_M: f64 = 0.05;
+/// Least reach of a wheel from its arm's pivot, m, and least share of its cylinder's force that lifts it (assumed):
+/// below its pivot a wheel is lifted by nothing, and beyond it the wrong way.
+const REACH_MIN_M: f64 = 0.05;
+const FORCE_RATIO_MIN: f64 = 0.01;
+/// Least rate of GNSS fixes, Hz (assumed): a fix in a quarter of an hour.
+const GNSS_RATE_MIN_HZ: f64 = 0.001;
+/// What no articulation joint turns by, degrees: there its frames stand across one another.
+const JOINT_ACROSS_DEG: f64 = 90.0;
 /// How far beyond its ends a cylinder may be driven, m: its metal stops give way.
 const STOP_GIVES_M: f64 = 0.02;
 /// How far two numbers that follow from one another may part: both are rounded.
@@ -84,8 +94,18 @@ pub(crate) fn misplaced(machine: &Machine) -> Option<(&'static str, f64, &'stati
     (high_m <= 0.0).then_some(("sensors.gnss_antenna_m", high_m, "it must be above the ground"))
 }
 
-/// A cylinder that does not close the triangle with its two eyes, or only just: section and key, the value,
-/// what it must be.
+/// A number above zero that is still of no use: section and key, the value, what it must be.
+pub(crate) fn unusable(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
+    let (rate_hz, angle_deg) = (machine.sensors.gnss_rate_hz, machine.articulation.angle_max_deg);
+    if rate_hz < GNSS_RATE_MIN_HZ {
+        return Some(("sensors.gnss_rate_hz", rate_hz, "it must be at least 0.001 Hz"));
+    }
+    let must = "it must be below 90 degrees, where two frames stand across one another";
+    (angle_deg >= JOINT_ACROSS_DEG).then_some(("articulation.angle_max_deg", angle_deg, must))
+}
+
+/// A cylinder that does not close the triangle with its two eyes, or only just, or an arm that it does not lift:
+/// section and key, the value, what it must be.
 pub(crate) fn unhinged(machine: &Machine) -> Option<(&'static str, f64, &'static str)> {
     let (arms, linkage) = (&machine.arms, machine.linkage());
     let moves = |stroke_m: f64| linkage.at_stroke(stroke_m).lever_m >= LEVER_MIN_M;
@@ -99,7 +119,31 @@ pub(crate) fn unhinged(machine: &Machine) -> Option<(&'static str, f64, &'static
                 eyes (arms.pivot_to_cylinder_eye_m, arms.pivot_to_rod_eye_m) with a lever of 0.05 m \
                 about the pivot";
     let far_m = arms.stroke_max_m + STOP_GIVES_M;
-    (!moves(far_m)).then_some(("arms.stroke_max_m", arms.stroke_max_m, must))
+    if !moves(far_m) {
+        return Some(("arms.stroke_max_m", arms.stroke_max_m, must));
+    }
+    not_lifted(machine, [-STOP_GIVES_M, far_m].map(|stroke_m| linkage.at_stroke(stroke_m)))
+}
+
+/// An arm whose wheel its cylinder does not lift in one of the poses at the `ends` of its stroke: with both it does
+/// in between, as the arm turns by less than half a turn. Section and key, the value, what it must be.
+fn not_lifted(machine: &Machine, ends: [ArmPose; 2]) -> Option<(&'static str, f64, &'static str)> {
+    let arms = &machine.arms;
+    if arms.pivot_to_wheel_m < REACH_MIN_M {
+        let must = "it must be at least 0.05 m";
+        return Some(("arms.pivot_to_wheel_m", arms.pivot_to_wheel_m, must));
+    }
+    let reaches =
+        |pose: &ArmPose| (0.0..PI).contains(&pose.angle_rad) && pose.reach_m >= REACH_MIN_M;
+    if !ends.iter().all(reaches) {
+        let must = "with arms.angle_arm_rad, and the cylinder 20 mm shorter than arms.closed_length_m or 20 mm \
+                    longer than with arms.stroke_max_m, the wheel must still reach 0.05 m from the pivot to its \
+                    own side";
+        return Some(("arms.angle_frame_rad", arms.angle_frame_rad, must));
+    }
+    let must = "at every stroke a newton of the cylinder must lift the wheel by 0.01 N";
+    let is_weak = ends.iter().any(|pose| pose.force_ratio < FORCE_RATIO_MIN);
+    is_weak.then_some(("arms.pivot_to_wheel_m", arms.pivot_to_wheel_m, must))
 }
 
 /// A number that others of the file give too, and otherwise: section and key, the value, what it must be.
@@ -303,7 +347,42 @@ mod tests {
             assert!(error.contains("lever of 0.05 m"), "{error}");
         }
         let longer =
-            Machine::builtin_text().replace("stroke_max_m = 0.50 ", "stroke_max_m = 0.80 ");
+            Machine::builtin_text().replace("stroke_max_m = 0.50 ", "stroke_max_m = 0.70 ");
         assert!(Machine::parse(&longer, Path::new("m.toml")).is_ok());
+    }
+
+    #[test]
+    fn a_cylinder_lifts_its_wheel_at_every_stroke() {
+        for (from, to, says) in [
+            // Beyond its pivot at the long end and nearly, beyond it at the short end, turned right round.
+            ("angle_frame_rad = 0.3370", "angle_frame_rad = 2.0", "0.05 m from the pivot"),
+            ("angle_frame_rad = 0.3370", "angle_frame_rad = 1.1", "0.05 m from the pivot"),
+            ("angle_frame_rad = 0.3370", "angle_frame_rad = -0.9", "0.05 m from the pivot"),
+            ("angle_frame_rad = 0.3370", "angle_frame_rad = 6.6202", "0.05 m from the pivot"),
+            ("pivot_to_wheel_m = 1.008", "pivot_to_wheel_m = 1e-12", "at least 0.05 m"),
+            ("pivot_to_wheel_m = 1.008", "pivot_to_wheel_m = 60.0", "lift the wheel by 0.01 N"),
+        ] {
+            let error = refusal(from, to);
+            let key = from.split(' ').next().unwrap();
+            assert!(error.starts_with(&format!("m.toml: arms.{key} = ")), "{error}");
+            assert!(error.contains(says), "{error}");
+        }
+        // A stroke that its triangle allows and its wheel does not.
+        let error = refusal("stroke_max_m = 0.50 ", "stroke_max_m = 0.80 ");
+        assert!(error.starts_with("m.toml: arms.angle_frame_rad = 0.337 "), "{error}");
+        assert!(error.contains("longer than with arms.stroke_max_m"), "{error}");
+    }
+
+    #[test]
+    fn a_number_above_zero_may_still_be_of_no_use() {
+        for (from, to, wanted) in [
+            ("gnss_rate_hz = 8.0 ", "gnss_rate_hz = 1e-20 ", "it must be at least 0.001 Hz"),
+            ("angle_max_deg = 25.0 ", "angle_max_deg = 90.0 ", "it must be below 90 degrees"),
+            ("angle_max_deg = 25.0 ", "angle_max_deg = 400.0 ", "it must be below 90 degrees"),
+        ] {
+            let error = refusal(from, to);
+            let key = from.split(' ').next().unwrap();
+            assert!(error.contains(&format!(".{key} = ")) && error.contains(wanted), "{error}");
+        }
     }
 }

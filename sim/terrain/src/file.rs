@@ -160,6 +160,8 @@ mod tests {
     const RAMP: &str = "kind = \"ramp\"\nx_m = [4, 7, 8.5, 11.5]\nheight_m = 0.3\n\
         y_min_m = -1.9\ny_max_m = -0.5\n";
 
+    const BOULDERS: &str = "count = 3\nradius_m = [0.3, 0.4]\nheight_m = [0.1, 0.2]\n";
+
     fn parse(text: &str) -> Result<Terrain, TerrainError> {
         Terrain::parse(text, Path::new("t.toml"))
     }
@@ -216,6 +218,10 @@ mod tests {
             ("[[bumps]]\nheight_m = 0\nwavelength_m = 1\n[[bumps]]\nheight_m = -1\nwavelength_m = 1"
                 .to_owned(), "t.toml:4: [bumps]", "0 to 2 m"),
             ("[slope]\ngrade = 1\n[grid]\nx_m = [0, 1e5]".to_owned(), "t.toml:3: [grid]", "smaller"),
+            (format!("[boulders]\n{BOULDERS}\n[boulders.clear]\nx_m = [-9, 3]"), "t.toml:6: clear", "both x_m"),
+            (format!("{BOULDERS}clear = {{ y_m = [-3, 3] }}\nkind = \"boulders\""), "t.toml:4: clear", "both x_m"),
+            (format!("[[boulders]]\n{BOULDERS}clear = {{}}"), "t.toml:5: clear", "both x_m"),
+            (format!("[boulders]\n{BOULDERS}[boulders.clear]\nz_m = 1"), "t.toml:6: unknown", "`x_m`"),
             (String::new(), "t.toml:1: no layer", "flat"),
             ("a = ".to_owned(), "t.toml:1: ", ""),
         ];

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::Extent;
 use crate::canvas::Canvas;
@@ -34,7 +35,7 @@ pub struct Boulders {
     /// Least and greatest height over the ground, m.
     pub height_m: [f64; 2],
     /// Where no boulder reaches; the machine at the start and a metre around it if left out.
-    #[serde(default = "start_area")]
+    #[serde(default = "start_area", deserialize_with = "both_axes")]
     pub clear: Extent,
     /// Which boulders of all those.
     #[serde(default)]
@@ -44,6 +45,20 @@ pub struct Boulders {
 /// The machine reaches 8 m back from its front axle, 1.5 m ahead of it and 1.5 m to either side.
 const fn start_area() -> Extent {
     Extent { x_m: [-9.0, 3.0], y_m: [-3.0, 3.0] }
+}
+
+/// An area of which both axes are said: what a grid has where one is left out is not around the start.
+fn both_axes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Extent, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Axes {
+        x_m: Option<[f64; 2]>,
+        y_m: Option<[f64; 2]>,
+    }
+    match Axes::deserialize(deserializer)? {
+        Axes { x_m: Some(x_m), y_m: Some(y_m) } => Ok(Extent { x_m, y_m }),
+        _ => Err(D::Error::custom("clear needs both x_m = [from, to] and y_m = [from, to]")),
+    }
 }
 
 /// One boulder: the upper half of an ellipsoid whose centre is on the ground.

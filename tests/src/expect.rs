@@ -4,6 +4,7 @@
 mod arm_speed;
 mod attitude;
 mod clears_ground;
+mod drives;
 mod ecu_state;
 mod ground_pressure;
 mod holds_still;
@@ -16,6 +17,7 @@ mod rear_joint;
 pub(crate) mod sense;
 mod standstill;
 mod step_response;
+mod strokes;
 mod trouble;
 mod unsupported;
 mod weight;
@@ -29,6 +31,7 @@ use crate::{Bound, Finding, Scenario, Trace, Truth};
 pub use arm_speed::ArmSpeed;
 pub use attitude::RollPeak;
 pub use clears_ground::ClearsGround;
+pub use drives::Drives;
 pub use ecu_state::{Ecu, ReachesState};
 pub use ground_pressure::EvenGroundPressure;
 pub use holds_still::HoldsStill;
@@ -40,6 +43,7 @@ pub use pose::ReachesPose;
 pub use rear_joint::RearFollows;
 pub use standstill::StandsStill;
 pub use step_response::StepResponse;
+pub use strokes::Strokes;
 pub use trouble::ReportsTrouble;
 pub use unsupported::Unsupported;
 pub use weight::CarriesWeight;
@@ -82,6 +86,10 @@ pub enum Expectation {
     Leans(Leans),
     /// Nothing but wheels touches the ground; of a simulated machine alone.
     ClearsGround(ClearsGround),
+    /// The machine drives.
+    Drives(Drives),
+    /// Arms stand between two bounds.
+    Strokes(Strokes),
 }
 
 /// A recorded run and what it ran: all that an expectation may look at.
@@ -121,6 +129,8 @@ impl Expectation {
             Self::ReportsTrouble(e) => e.judge(evidence),
             Self::Leans(e) => e.judge(evidence),
             Self::ClearsGround(e) => e.judge(evidence),
+            Self::Drives(e) => e.judge(evidence),
+            Self::Strokes(e) => e.judge(evidence),
         }
     }
 }

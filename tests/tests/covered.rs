@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use xt28_machine::{Machine, PerWheel};
-use xt28_scenarios::trace::Attitude;
+use xt28_scenarios::trace::{Attitude, Motion};
 use xt28_scenarios::{Evidence, Finding, Scenario, Trace, Truth};
 
 fn scenario(toml: &str) -> Scenario {
@@ -39,6 +39,7 @@ fn standing(heard: impl Fn(f64) -> bool) -> (Trace, Truth) {
             trace.stroke_m.push(at_s, PerWheel::splat(0.25));
             trace.cylinder_load_n.push(at_s, PerWheel::splat(load_n));
             trace.attitude.push(at_s, Attitude::default());
+            trace.motion.push(at_s, Motion::default());
             trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(0.0));
             truth.ground_force_n.push(at_s, PerWheel::splat(wheel_n));
             truth.chassis_force_n.push(at_s, 0.0);
@@ -47,7 +48,7 @@ fn standing(heard: impl Fn(f64) -> bool) -> (Trace, Truth) {
     (trace, truth)
 }
 
-const WINDOWED: [&str; 9] = [
+const WINDOWED: [&str; 11] = [
     "stays-level = { from_s = 2, to_s = 8, roll_deg = 1, pitch_deg = 1 }",
     "leans = { from_s = 2, to_s = 8, roll_deg = 0, within_deg = 1 }",
     "holds-still = { from_s = 2, to_s = 8, within_mm = 1 }",
@@ -57,6 +58,8 @@ const WINDOWED: [&str; 9] = [
     "clears-ground = { from_s = 2, to_s = 8 }",
     "unsupported = { wheels = [\"FR\"], from_s = 2, to_s = 8, within_kn = 99 }",
     "stands-still = { below_m_s = 0.02, over_s = 8 }",
+    "strokes = { wheels = [\"FR\"], from_s = 2, to_s = 8, from_mm = 249, to_mm = 251 }",
+    "drives = { from_s = 2, to_s = 8, from_m_s = 0, to_m_s = 0.1 }",
 ];
 
 #[test]

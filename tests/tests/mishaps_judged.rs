@@ -4,20 +4,31 @@ use std::io;
 use std::path::Path;
 
 use xt28_machine::{Machine, PerWheel, Wheel};
-use xt28_scenarios::trace::{Attitude, EcuState};
+use xt28_scenarios::trace::{Attitude, EcuState, Motion};
 use xt28_scenarios::{Evidence, Finding, Scenario, Trace, Trouble};
 
-/// What the one expectation `toml` makes of `trace`.
+/// Whether the one expectation `toml`, which makes one finding, holds of `trace`.
 fn holds(toml: &str, trace: &Trace) -> bool {
+    let findings = judged(toml, trace);
+    assert_eq!(findings.len(), 1);
+    findings.iter().all(Finding::passed)
+}
+
+/// The same of one that makes two.
+fn hold(toml: &str, trace: &Trace) -> bool {
+    let findings = judged(toml, trace);
+    assert_eq!(findings.len(), 2);
+    findings.iter().all(Finding::passed)
+}
+
+fn judged(toml: &str, trace: &Trace) -> Vec<Finding> {
     let text = format!("title = \"t\"\npolicy = \"hold\"\nduration_s = 10\n[[expect]]\n{toml}\n");
     let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
     let scenario = Scenario::parse(&text, Path::new("t.toml"), none).expect("a good scenario");
     let machine = Machine::xt28();
     let evidence =
         Evidence { scenario: &scenario, machine: &machine, payload_kg: 0.0, trace, truth: None };
-    let findings = scenario.expectations[0].judge(&evidence);
-    assert_eq!(findings.len(), 1);
-    findings.iter().all(Finding::passed)
+    scenario.expectations[0].judge(&evidence)
 }
 
 fn passing(states: &[EcuState]) -> Trace {
@@ -62,6 +73,50 @@ fn arms_hold_still_if_each_does() {
     assert!(holds(wanted, &moving(60.0, 2.01)), "later is not asked for");
     assert!(!holds(wanted, &moving(3.0, 0.0)));
     assert!(!holds(wanted, &Trace::default()));
+}
+
+#[test]
+fn arms_stand_between_bounds_if_each_named_does() {
+    let wanted = "strokes = { wheels = [\"FR\", \"ML\"], from_s = 1.0, to_s = 2.0, from_mm = 247, to_mm = 253 }";
+    let standing = |wheel: Wheel, mm: f64| {
+        let mut trace = Trace::default();
+        for tick in 0..300 {
+            let mut stroke_m = PerWheel::splat(0.25);
+            if (100..200).contains(&tick) {
+                stroke_m[wheel] = mm * 1e-3;
+            }
+            trace.stroke_m.push(f64::from(tick) * 0.01, stroke_m);
+        }
+        trace
+    };
+    assert!(hold(wanted, &standing(Wheel::Ml, 252.0)));
+    assert!(hold(wanted, &standing(Wheel::Bl, 170.0)), "not named");
+    assert!(!hold(wanted, &standing(Wheel::Ml, 246.0)));
+    assert!(!hold(wanted, &standing(Wheel::Fr, 254.0)));
+    assert!(!hold(wanted, &Trace::default()));
+}
+
+#[test]
+fn a_machine_drives_if_wheels_and_receiver_say_so() {
+    let wanted = "drives = { from_s = 1.0, to_s = 2.0, from_m_s = 0.7, to_m_s = 0.9 }";
+    let driving = |wheels_m_s: f64, receiver_m_s: f64| {
+        let mut trace = Trace::default();
+        // Heading north.
+        let heading_rad = std::f64::consts::FRAC_PI_2;
+        let velocity_m_s = [0.0, receiver_m_s, 0.0];
+        for tick in 0..300 {
+            let at_s = f64::from(tick) * 0.01;
+            trace.motion.push(at_s, Motion { velocity_m_s, heading_rad });
+            let speed_rad_s = wheels_m_s / Machine::xt28().wheels.radius_m;
+            trace.wheel_speed_rad_s.push(at_s, PerWheel::splat(speed_rad_s));
+        }
+        trace
+    };
+    assert!(hold(wanted, &driving(0.8, 0.8)));
+    assert!(!hold(wanted, &driving(0.8, 0.0)), "wheels that spin on the spot");
+    assert!(!hold(wanted, &driving(0.0, 0.8)), "a slide");
+    assert!(!hold(wanted, &driving(-0.8, -0.8)), "backwards");
+    assert!(!hold(wanted, &Trace::default()));
 }
 
 #[test]

@@ -18,6 +18,7 @@ pub(crate) mod sense;
 mod standstill;
 mod step_response;
 mod strokes;
+mod strokes_apart;
 mod trouble;
 mod unsupported;
 mod weight;
@@ -44,6 +45,7 @@ pub use rear_joint::RearFollows;
 pub use standstill::StandsStill;
 pub use step_response::StepResponse;
 pub use strokes::Strokes;
+pub use strokes_apart::StrokesApart;
 pub use trouble::ReportsTrouble;
 pub use unsupported::Unsupported;
 pub use weight::CarriesWeight;
@@ -90,6 +92,8 @@ pub enum Expectation {
     Drives(Drives),
     /// Arms stand between two bounds.
     Strokes(Strokes),
+    /// Arms take up the heights of the ground.
+    StrokesApart(StrokesApart),
 }
 
 /// A recorded run and what it ran: all that an expectation may look at.
@@ -131,6 +135,7 @@ impl Expectation {
             Self::ClearsGround(e) => e.judge(evidence),
             Self::Drives(e) => e.judge(evidence),
             Self::Strokes(e) => e.judge(evidence),
+            Self::StrokesApart(e) => e.judge(evidence),
         }
     }
 }

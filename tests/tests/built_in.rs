@@ -1,11 +1,12 @@
-//! What the built-in scenarios must see: a machine that does not move, and a stop that comes late.
+//! What the built-in scenarios must see: a machine that does not move, ground that is not there, and a stop that
+//! comes late.
 
 use std::io;
 use std::time::Duration;
 
 use xt28_machine::{Machine, PerWheel};
 use xt28_scenarios::{
-    BUILTIN, Evidence, Expectation, Finding, Lockstep, Report, Scenario, Setup, Trace,
+    BUILTIN, Evidence, Expectation, Finding, Ground, Lockstep, Report, Scenario, Setup, Trace,
 };
 use xt28_sim::Solver;
 
@@ -25,6 +26,19 @@ fn no_scenario_holds_of_a_machine_that_nobody_moves() {
         (scenario.operator, scenario.cab) = (None, None);
         let report = run(scenario);
         assert!(!report.passed(), "\n{}", report.table());
+    }
+}
+
+#[test]
+fn no_scenario_with_a_terrain_holds_on_level_ground() {
+    let level = Ground::default();
+    for (name, _) in BUILTIN {
+        let mut scenario = Scenario::find(name).unwrap();
+        if scenario.terrain != level {
+            scenario.terrain = level.clone();
+            let report = run(scenario);
+            assert!(!report.passed(), "\n{}", report.table());
+        }
     }
 }
 

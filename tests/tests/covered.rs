@@ -48,7 +48,7 @@ fn standing(heard: impl Fn(f64) -> bool) -> (Trace, Truth) {
     (trace, truth)
 }
 
-const WINDOWED: [&str; 11] = [
+const WINDOWED: [&str; 12] = [
     "stays-level = { from_s = 2, to_s = 8, roll_deg = 1, pitch_deg = 1 }",
     "leans = { from_s = 2, to_s = 8, roll_deg = 0, within_deg = 1 }",
     "holds-still = { from_s = 2, to_s = 8, within_mm = 1 }",
@@ -59,6 +59,7 @@ const WINDOWED: [&str; 11] = [
     "unsupported = { wheels = [\"FR\"], from_s = 2, to_s = 8, within_kn = 99 }",
     "stands-still = { below_m_s = 0.02, over_s = 8 }",
     "strokes = { wheels = [\"FR\"], from_s = 2, to_s = 8, from_mm = 249, to_mm = 251 }",
+    "strokes-apart = { from_s = 2, to_s = 8, from_mm = 0, to_mm = 1 }",
     "drives = { from_s = 2, to_s = 8, from_m_s = 0, to_m_s = 0.1 }",
 ];
 

@@ -97,6 +97,27 @@ fn arms_stand_between_bounds_if_each_named_does() {
 }
 
 #[test]
+fn strokes_are_apart_at_one_time() {
+    let wanted = "strokes-apart = { from_s = 1.0, to_s = 2.0, from_mm = 80, to_mm = 120 }";
+    let apart = |mm: f64, heave_mm: f64| {
+        let mut trace = Trace::default();
+        for tick in 0..300 {
+            // All alike, up and down: that is no ground.
+            let heave_m = if tick < 150 { 0.0 } else { heave_mm * 1e-3 };
+            let mut stroke_m = PerWheel::splat(0.2 + heave_m);
+            stroke_m[Wheel::Br] -= mm * 1e-3;
+            trace.stroke_m.push(f64::from(tick) * 0.01, stroke_m);
+        }
+        trace
+    };
+    assert!(holds(wanted, &apart(100.0, 50.0)));
+    assert!(holds(wanted, &apart(-100.0, 0.0)));
+    assert!(!holds(wanted, &apart(0.0, 100.0)));
+    assert!(!holds(wanted, &apart(130.0, 0.0)));
+    assert!(!holds(wanted, &Trace::default()));
+}
+
+#[test]
 fn a_machine_drives_if_wheels_and_receiver_say_so() {
     let wanted = "drives = { from_s = 1.0, to_s = 2.0, from_m_s = 0.7, to_m_s = 0.9 }";
     let driving = |wheels_m_s: f64, receiver_m_s: f64| {

@@ -46,7 +46,7 @@ fn known(text: &str) -> Vec<String> {
 fn the_page_has_every_name_that_a_file_may() {
     let places = [
         ("", 13),
-        ("[[expect]]\nno-such = 1\n", 19),
+        ("[[expect]]\nno-such = 1\n", 20),
         ("[[event]]\nat_s = 1\nno_such = 1\n", 6),
         ("[[fault]]\nno_such = 1\n", 5),
         ("[[fault]]\nsensor = \"no-such\"\n", 11),

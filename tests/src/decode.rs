@@ -4,6 +4,7 @@ use xt28_dbc::{Frame, messages as m};
 use xt28_machine::PerWheel;
 
 use crate::Series;
+use crate::frame_check::FrameCheck;
 use crate::trace::{Attitude, DriveCommand, EcuState, Fault, Motion, Trace, wrapped_rad};
 use crate::trouble::TroubleReader;
 
@@ -11,6 +12,7 @@ use crate::trouble::TroubleReader;
 #[derive(Clone, Debug)]
 pub struct Decoder {
     trace: Trace,
+    check: FrameCheck,
     stroke: Halves,
     load: Halves,
     /// Of the pendulum-arm ECU, of the transmission ECU.
@@ -24,6 +26,7 @@ impl Default for Decoder {
     fn default() -> Self {
         Self {
             trace: Trace::default(),
+            check: FrameCheck::default(),
             stroke: Halves::default(),
             load: Halves::default(),
             trouble: [ARM_ADDRESS, DRIVE_ADDRESS].map(TroubleReader::new),
@@ -65,8 +68,8 @@ const RAD_S_PER_RPM: f64 = std::f64::consts::TAU / 60.0;
 const N_PER_DAN: f64 = 10.0;
 
 impl Decoder {
-    /// Takes in `frame`, which ended at `at_s` from the start of the run. A frame of ours that
-    /// does not decode becomes a [`Fault`]; one that is not ours is only counted.
+    /// Takes in `frame`, which ended at `at_s` from the start of the run. A frame of our
+    /// database that does not fit it becomes a [`Fault`]; one that is not of it is only counted.
     pub fn push(&mut self, at_s: f64, frame: &Frame) {
         self.trace.frames += 1;
         self.trace.end_s = at_s;
@@ -77,8 +80,11 @@ impl Decoder {
         if let Some(trouble) = drive.push(frame) {
             self.trace.drive_trouble.push(at_s, trouble);
         }
-        if let Err(error) = self.decode(at_s, frame) {
-            self.trace.faults.push(Fault { at_s, what: format!("{frame:?}: {error}") });
+        // Whether or not anything is read from it.
+        let checked = self.check.push(at_s, frame).map_err(|problem| problem.to_string());
+        let decoded = self.decode(at_s, frame).map_err(|error| error.to_string());
+        if let Err(problem) = checked.and(decoded) {
+            self.trace.faults.push(Fault { at_s, what: format!("{frame:?}: {problem}") });
         }
     }
 

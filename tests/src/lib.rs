@@ -17,6 +17,7 @@ mod error;
 mod event;
 pub mod expect;
 mod finding;
+mod frame_check;
 mod ground;
 mod lockstep;
 mod picture;

@@ -36,7 +36,7 @@ pub struct Trace {
     pub drive_trouble: Series<Trouble>,
     /// Frames of any kind.
     pub frames: u64,
-    /// Frames of ours that did not decode.
+    /// Frames of our database that do not fit it.
     pub faults: Vec<Fault>,
     /// When the last frame was on the bus, s.
     pub end_s: f64,
@@ -87,7 +87,7 @@ pub enum EcuState {
     Fault,
 }
 
-/// A frame that should have decoded and did not.
+/// A frame that does not fit our database.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     /// When, s.

@@ -132,3 +132,104 @@ const IDS: &[u32] = &[
     0x0CFF_5129,
     0x0000_0001,
 ];
+
+/// A frame of each message of the database, all zeros but for what must not be: CRC, counter, what zero is out of
+/// range of.
+fn each_message(counter: u8) -> Vec<(String, Frame)> {
+    let database = xt28_dbc::database();
+    let frame = |message: &xt28_dbc::model::Message| {
+        let mut data = vec![0; usize::from(message.len)];
+        for signal in &message.signals {
+            let value = if signal.name == "Counter" && message.alive {
+                f64::from(counter % 16)
+            } else {
+                0_f64.clamp(signal.field.min, signal.field.max)
+            };
+            signal.field.write(&mut data, value).unwrap();
+        }
+        if message.is_protected() {
+            data[7] = xt28_dbc::e2e::crc(message.data_id, &data[..7]);
+        }
+        let id = match message.id & 0x8000_0000 {
+            0 => CanId::standard(u16::try_from(message.id).unwrap()),
+            _ => CanId::extended(message.id & 0x1FFF_FFFF),
+        };
+        (message.name.clone(), Frame::new(id.unwrap(), &data).unwrap())
+    };
+    database.messages().iter().map(frame).collect()
+}
+
+#[test]
+fn every_message_of_the_database_is_held_to_its_length() {
+    let whole = decoded(each_message(0).into_iter().map(|(_, frame)| frame));
+    assert_eq!(whole.faults, []);
+    for (name, frame) in each_message(0) {
+        let short = &frame.data()[1..];
+        let trace = decoded([Frame::new(frame.id(), short).unwrap()]);
+        assert_eq!(trace.faults.len(), 1, "{name}");
+        assert!(trace.faults[0].what.contains(&name), "{:?}", trace.faults);
+    }
+}
+
+#[test]
+fn every_protected_message_is_held_to_its_crc_and_every_other_to_its_ranges() {
+    let database = xt28_dbc::database();
+    let mut out_of_range = 0;
+    for (name, frame) in each_message(0) {
+        let message = database.message_named(&name).unwrap();
+        let faults = |data: &[u8]| {
+            decoded([Frame::new(frame.id(), data).unwrap()]).faults.first().map(|f| f.what.clone())
+        };
+        if message.is_protected() {
+            let mut data = frame.data().to_vec();
+            data[7] ^= 0x10;
+            assert!(faults(&data).unwrap().contains("crc"), "{name}");
+            continue;
+        }
+        for signal in &message.signals {
+            for raw in [0, u64::MAX, 1 << (signal.field.length - 1)] {
+                let mut data = frame.data().to_vec();
+                signal.field.set_raw(&mut data, raw);
+                if signal.field.read(&data).is_err() {
+                    let fault = faults(&data).unwrap_or_else(|| panic!("{name}.{}", signal.name));
+                    assert!(fault.contains(&signal.name), "{fault}");
+                    out_of_range += 1;
+                }
+            }
+        }
+    }
+    assert!(out_of_range > 10, "{out_of_range}");
+}
+
+/// Ticks of all messages, the counter in each as `counter` has it.
+fn ticking(ticks: u8, counter: impl Fn(u8) -> u8) -> Trace {
+    let mut decoder = Decoder::default();
+    for tick in 0..ticks {
+        for (_, frame) in each_message(counter(tick)) {
+            decoder.push(f64::from(tick) * 0.01, &frame);
+        }
+    }
+    decoder.finish()
+}
+
+#[test]
+fn an_alive_counter_goes_up_in_each_message_that_has_one() {
+    let alive = xt28_dbc::database().messages().iter().filter(|message| message.alive).count();
+    assert_eq!(ticking(40, |tick| tick).faults, []);
+    assert_eq!(ticking(2, |_| 3).faults.len(), alive, "it stands still");
+    assert_eq!(ticking(2, |tick| 9 - tick).faults.len(), alive, "it goes back");
+    assert_eq!(ticking(2, |tick| 5 * tick).faults.len(), alive, "it goes ahead of time");
+}
+
+#[test]
+fn frames_that_are_missing_and_senders_that_begin_anew_are_no_fault() {
+    let mut decoder = Decoder::default();
+    for tick in [0, 1, 2, 5, 6, 12, 13, 30] {
+        // It was silent from 13 on, and began anew at 30.
+        let counter = if tick == 30 { 0 } else { tick };
+        for (_, frame) in each_message(counter) {
+            decoder.push(f64::from(tick) * 0.01, &frame);
+        }
+    }
+    assert_eq!(decoder.finish().faults, []);
+}

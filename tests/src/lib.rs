@@ -45,7 +45,7 @@ pub use event::{Event, GatewayOrder, Incident, Node};
 pub use expect::{Evidence, Expectation};
 pub use finding::{Bound, Finding};
 pub use ground::Ground;
-pub use lockstep::{Lockstep, RunError, STEPS_PER_TICK, TickCost};
+pub use lockstep::{INTERFACE, Lockstep, RunError, STEPS_PER_TICK, TickCost};
 pub use picture::Picture;
 pub use recording::Recording;
 pub use report::{Cost, Report};

@@ -89,7 +89,7 @@ pub enum RunError {
 }
 
 /// Name of the bus in the log, as on a real one.
-const INTERFACE: &str = "vcan0";
+pub const INTERFACE: &str = "vcan0";
 
 impl<W: Write> Lockstep<W> {
     /// Everything at rest at time zero; the log goes to `log`.

@@ -1,10 +1,12 @@
 //! The files a run leaves: its log, its picture, its report.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use xt28_scenarios::{Picture, Recording, Report, RunError, Setup};
+use xt28_bus::candump::{Reader, Record};
+use xt28_machine::SimTime;
+use xt28_scenarios::{INTERFACE, Picture, Recording, Report, RunError, Setup};
 
 use crate::Failure;
 use crate::files::{Form, Outputs, refusal, write};
@@ -80,8 +82,11 @@ impl Artefacts {
         match &self.log {
             // In its own folder, under its scenario's name, a log is the bench's.
             Some(log) if self.log_option != OUT && !may_be_replaced(log)? => {
-                let problem = "it is there, and is no log in simulated time; give --record another";
-                Err(format!("{}: {problem}", log.display()).into())
+                let log = log.display();
+                Err(format!(
+                    "{log}: it is there, and is no log of the bench in simulated time (those begin at zero, on {INTERFACE}); give --record another"
+                )
+                .into())
             }
             _ => Ok(()),
         }
@@ -123,20 +128,30 @@ impl Artefacts {
     }
 }
 
-/// Whether a log may be written over: one in simulated time is made again in a moment, one of a machine is not. The
-/// first begins at zero, where others have the time of day.
+/// Whether a log may be written over: one of the bench in simulated time is made again in a moment, one of a machine is
+/// not. The first begins at zero on the bench's own interface; others have the time of day, but for a machine whose
+/// clock was never set or a recorder that counts from its start.
 fn may_be_replaced(path: &Path) -> Result<bool, Failure> {
     // What is no file keeps nothing, and a pipe would wait for somebody to write.
     if !fs::metadata(path).is_ok_and(|there| there.is_file()) {
         return Ok(true);
     }
-    let mut head = Vec::new();
-    File::open(path)?.take(SIMULATED.len() as u64).read_to_end(&mut head)?;
-    Ok(head.is_empty() || head == SIMULATED)
+    let mut line = Vec::new();
+    BufReader::new(File::open(path)?.take(LINE_BYTES)).read_until(b'\n', &mut line)?;
+    Ok(line.is_empty() || is_of_the_bench(&line))
 }
 
-/// How a log in simulated time begins.
-const SIMULATED: &[u8] = b"(0.";
+/// Whether a log that begins with this line is one of the bench's in simulated time.
+fn is_of_the_bench(line: &[u8]) -> bool {
+    let first = Reader::new(line, "").next();
+    let Some(Ok(Record { at, interface, .. })) = first else { return false };
+    at < SECOND && &*interface == INTERFACE
+}
+
+/// Longer than the first line of any log.
+const LINE_BYTES: u64 = 512;
+/// The bench sends from its first tick on.
+const SECOND: SimTime = SimTime::from_nanos(1_000_000_000);
 /// What is written beside the log, in this order.
 const ENDINGS: [(&str, Form); 2] = [("svg", Form::Page), ("json", Form::Json)];
 const OUT: &str = "--out";

@@ -59,8 +59,30 @@ fn a_run_that_is_refused_leaves_the_log_of_an_earlier_one() {
     assert_ne!(fs::read_to_string(&log).unwrap(), OLD);
     let field = path(&folder, "field.log");
     let talk = refusal(&["run", &s, "--record", &field]);
-    assert!(talk.contains("is no log in simulated time; give --record another"), "{talk}");
+    assert!(talk.contains("is no log of the bench in simulated time"), "{talk}");
+    assert!(talk.contains("give --record another"), "{talk}");
     assert_eq!(fs::read_to_string(&field).unwrap(), FIELD);
+}
+
+#[test]
+fn a_log_of_a_machine_is_kept_though_its_times_begin_at_zero() {
+    let unset = "(0.000137) can0 001#\n(0.010137) can0 001#\n";
+    let others = [
+        unset,
+        "(0.000137) vcan0 001#",
+        "(0.000137) vcan00 001#\n",
+        "(0.000137) vcan0 notes\n",
+        "(0.5, 0.5) is where it stood\n",
+        "(17.000137) vcan0 001#\n",
+    ];
+    for kept in others {
+        let folder = folder_with(&[("s.toml", SCENARIO), ("field.log", kept)]);
+        let [s, field] = ["s.toml", "field.log"].map(|name| path(&folder, name));
+        let talk = refusal(&["run", &s, "--record", &field]);
+        assert!(talk.contains("field.log: it is there, and is no log of the bench"), "{talk}");
+        assert!(talk.contains("vcan0"), "{talk}");
+        assert_eq!(fs::read_to_string(&field).unwrap(), kept);
+    }
 }
 
 #[test]

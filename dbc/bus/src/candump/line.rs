@@ -24,6 +24,9 @@ pub enum BadLine {
     /// Something other than a direction follows the data.
     #[error("something other than R or T follows the data")]
     Trailing,
+    /// A line of candump -d that does not say how many frames were dropped.
+    #[error("no DROPCOUNT such as: dropped 3 CAN frames on 'can0' socket (total drops 3)")]
+    DropCount,
     /// What candump shows on a screen, with the number of bytes in square brackets.
     #[error("candump as on a screen, not a log")]
     Screen,
@@ -55,6 +58,8 @@ pub(super) enum Line<'a> {
     Error,
     /// A CAN FD frame.
     Fd,
+    /// candump -d's word for frames that came faster than it took them.
+    Dropped(u64),
     /// Nothing but white space.
     Blank,
 }
@@ -71,6 +76,9 @@ fn read(line: &[u8]) -> Result<Line<'_>, BadLine> {
     let Some(time) = words.next() else {
         return Ok(Line::Blank);
     };
+    if time == b"DROPCOUNT:" {
+        return drop_count(words).map(Line::Dropped).ok_or(BadLine::DropCount);
+    }
     let at = parse_time(time).ok_or(BadLine::Time)?;
     let interface = words.next().and_then(|word| core::str::from_utf8(word).ok());
     let interface = interface.filter(|name| !name.contains('#')).ok_or(BadLine::Interface)?;
@@ -87,6 +95,15 @@ fn read(line: &[u8]) -> Result<Line<'_>, BadLine> {
         Body::Error => Line::Error,
         Body::Fd => Line::Fd,
     })
+}
+
+/// `dropped 3 CAN frames on 'can0' socket (total drops 3)`, as candump -d says it on a line of its own, without a time:
+/// how many.
+fn drop_count<'a>(mut words: impl Iterator<Item = &'a [u8]>) -> Option<u64> {
+    let mut next = || words.next();
+    let (dropped, frames, can, unit) = (next()?, decimal(next()?)?, next()?, next()?);
+    let is_count = dropped == b"dropped" && can == b"CAN" && matches!(unit, b"frame" | b"frames");
+    is_count.then_some(frames)
 }
 
 /// `(1758440579.175206)`, with one to nine digits of fraction, in whole nanoseconds.
@@ -221,6 +238,8 @@ mod tests {
             ("(0.1) can0 12345678#R8 T", Line::Remote),
             ("(0.1) can0 20000004#0004000000000000", Line::Error),
             ("(0.1) can0 123##1AABB", Line::Fd),
+            ("DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total drops 7)", Line::Dropped(3)),
+            ("DROPCOUNT: dropped 1 CAN frame on 'can0' socket (total drops 1)\r", Line::Dropped(1)),
             (" \r", Line::Blank),
             ("", Line::Blank),
         ] {
@@ -239,6 +258,10 @@ mod tests {
             ("(1.0000000001) can0 123#", BadLine::Time),
             ("(18446744073.709551616) can0 123#", BadLine::Time),
             ("(18446744073709551620.5) can0 123#", BadLine::Time),
+            ("DROPCOUNT:", BadLine::DropCount),
+            ("DROPCOUNT: dropped CAN frames on 'can0' socket", BadLine::DropCount),
+            ("DROPCOUNT: dropped -3 CAN frames on 'can0' socket", BadLine::DropCount),
+            ("DROPCOUNT: dropped 3 balls on 'can0' socket", BadLine::DropCount),
             ("(1.5)", BadLine::Interface),
             ("(1.5) 123#AB", BadLine::Interface),
             ("(1.5) can0", BadLine::Identifier),

@@ -9,8 +9,8 @@
 //! ` R` another node (candump `-x`, python-can).
 //!
 //! Recognised, counted and passed over: remote frames
-//! (`123#R`), error frames (bit 29 of an eight-digit identifier), CAN FD (`123##1..`). Anything
-//! else is an error that names the line.
+//! (`123#R`), error frames (bit 29 of an eight-digit identifier), CAN FD (`123##1..`), and what
+//! candump `-d` says of frames that it dropped. Anything else is an error that names the line.
 
 mod line;
 mod reader;

@@ -44,7 +44,7 @@ pub enum ReadError {
     },
 }
 
-/// Frames that a log holds and that are of no kind that is read.
+/// Frames that a log holds and that are of no kind that is read, and those that it says it lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Skipped {
     /// Remote frames.
@@ -53,13 +53,15 @@ pub struct Skipped {
     pub error: u64,
     /// CAN FD frames.
     pub fd: u64,
+    /// Frames that came faster than candump took them, as its option -d says.
+    pub dropped: u64,
 }
 
 impl Skipped {
     /// All of them.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.remote + self.error + self.fd
+        self.remote + self.error + self.fd + self.dropped
     }
 }
 
@@ -133,7 +135,7 @@ impl<R: BufRead> Reader<R> {
         self.skipped
     }
 
-    /// Line of the first frame that was passed over, counted from 1.
+    /// Line of the first frame that was passed over, or that says that frames were dropped, counted from 1.
     #[must_use]
     pub fn skipped_line(&self) -> Option<u64> {
         self.skipped_line
@@ -167,6 +169,9 @@ impl<R: BufRead> Reader<R> {
                 Line::Remote => self.skipped.remote += 1,
                 Line::Error => self.skipped.error += 1,
                 Line::Fd => self.skipped.fd += 1,
+                Line::Dropped(frames) => {
+                    self.skipped.dropped = self.skipped.dropped.saturating_add(frames);
+                }
                 Line::Blank => continue,
             }
             self.skipped_line.get_or_insert(self.line);
@@ -265,8 +270,23 @@ mod tests {
             "(1.5) can0 123#55\n(1.6) can0 20000004#00\n(1.7) can0 123##1\n(1.8) can0 123#R\n";
         let mut reader = Reader::new(log.as_bytes(), "a.log");
         assert_eq!(reader.by_ref().count(), 1);
-        assert_eq!(reader.skipped(), Skipped { remote: 1, error: 1, fd: 1 });
+        assert_eq!(reader.skipped(), Skipped { remote: 1, error: 1, fd: 1, dropped: 0 });
         assert_eq!((reader.skipped().total(), reader.skipped_line()), (3, Some(2)));
+    }
+
+    #[test]
+    fn what_candump_dropped_is_counted_and_read_on_from() {
+        let drops = |frames: u64, total: u64| {
+            format!(
+                "DROPCOUNT: dropped {frames} CAN frames on 'can0' socket (total drops {total})\n"
+            )
+        };
+        let frame = "(1.5) can0 123#\n";
+        let log = [frame, &drops(3, 3), frame, &drops(2, 5), frame].concat();
+        let mut reader = Reader::new(log.as_bytes(), "a.log");
+        assert_eq!(reader.by_ref().filter_map(Result::ok).count(), 3);
+        assert_eq!(reader.skipped(), Skipped { dropped: 5, ..Skipped::default() });
+        assert_eq!(reader.skipped_line(), Some(2));
     }
 
     #[test]

@@ -59,19 +59,28 @@ const SCRIPTS: &[(&str, &str)] = texts!(
 
 /// The text of a built-in script.
 fn script(path: &Path) -> io::Result<String> {
-    let named = |name: &str| path.to_str() == Some(&format!("{name}.toml"));
-    let found = SCRIPTS.iter().find(|(name, _)| named(name));
-    found.map(|(_, text)| (*text).to_owned()).ok_or_else(|| io::ErrorKind::NotFound.into())
+    script_text(path).map(str::to_owned).ok_or_else(|| io::ErrorKind::NotFound.into())
 }
 
-/// Files of a built-in scenario, each with its text: the scenario's own first, then what lies beside it.
+fn script_text(path: &Path) -> Option<&'static str> {
+    let named = |name: &str| path.to_str() == Some(&format!("{name}.toml"));
+    SCRIPTS.iter().find(|(name, _)| named(name)).map(|(_, text)| *text)
+}
+
+/// Files of a built-in scenario, each with its text: the scenario's own first, then what it names beside it. None of one
+/// that is not built in.
 #[must_use]
 pub fn files_of(name: &str) -> Vec<(String, &'static str)> {
-    let is_own = |file: &str| {
-        file == name || file.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'))
+    let own = BUILTIN.iter().find(|(built_in, _)| *built_in == name);
+    let Some((Ok(scenario), (_, text))) = own.map(|own| (Scenario::find(own.0), own)) else {
+        return Vec::new();
     };
-    let all = BUILTIN.iter().chain(SCRIPTS).filter(|(file, _)| is_own(file));
-    all.map(|(file, text)| (format!("{file}.toml"), *text)).collect()
+    let named = [scenario.script.map(|script| script.path), scenario.operator];
+    let beside = named.into_iter().flatten().filter_map(|path| {
+        let text = script_text(&path)?;
+        Some((path.to_str()?.to_owned(), text))
+    });
+    std::iter::once((format!("{name}.toml"), *text)).chain(beside).collect()
 }
 
 impl Scenario {
@@ -130,6 +139,23 @@ mod tests {
             assert_eq!(scenario.name, *name);
             assert!(!scenario.expectations.is_empty(), "{name}");
         }
+    }
+
+    #[test]
+    fn what_a_built_in_scenario_needs_is_among_its_files() {
+        for (name, _) in BUILTIN {
+            let folder = tempfile::tempdir().unwrap();
+            let files = files_of(name);
+            for (file, text) in &files {
+                std::fs::write(folder.path().join(file), text).unwrap();
+            }
+            let scenario = Scenario::load(&folder.path().join(&files[0].0));
+            let scenario = scenario.unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(scenario.name, *name);
+            let beside = [scenario.script.is_some(), scenario.operator.is_some()];
+            assert_eq!(files.len(), 1 + beside.into_iter().filter(|is_there| *is_there).count());
+        }
+        assert!(files_of("no-such").is_empty());
     }
 
     #[test]

@@ -51,8 +51,9 @@ impl Scenarios {
                 .collect();
             say!("{}\n", json!(list));
         } else {
+            let width = scenarios.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
             for s in scenarios {
-                say!("{:<14} {:>5} s  {}\n", s.name, s.duration_s, s.title);
+                say!("{:<width$} {:>5} s  {}\n", s.name, s.duration_s, s.title);
             }
         }
         Ok(Verdict::Positive)

@@ -69,6 +69,25 @@ fn files_land_where_asked_and_the_same_seed_gives_the_same_log() {
 }
 
 #[test]
+fn a_scenario_that_plays_the_script_of_another_is_written_with_it_and_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("own");
+    let at = |name: &str| out.join(name).to_str().unwrap().to_owned();
+    let written = xt28(&["scenarios", "broken-wire", "--out", out.to_str().unwrap()]);
+    assert_eq!(written.status.code(), Some(0), "{}", String::from_utf8_lossy(&written.stderr));
+    let run = xt28(&["run", &at("broken-wire.toml")]);
+    assert_eq!(run.status.code(), Some(0), "{}", String::from_utf8_lossy(&run.stderr));
+    assert!(std::path::Path::new(&at("brown-out.script.toml")).exists());
+}
+
+#[test]
+fn the_list_of_scenarios_has_its_columns_under_one_another() {
+    let list = String::from_utf8(xt28(&["scenarios"]).stdout).unwrap();
+    let columns: Vec<_> = list.lines().map(|line| line.find(" s  ").unwrap()).collect();
+    assert!(columns.len() > 20 && columns.iter().all(|at| *at == columns[0]), "{list}");
+}
+
+#[test]
 fn the_lists_print() {
     let output = xt28(&["scenarios", "--json"]);
     let list: Value = serde_json::from_slice(&output.stdout).unwrap();

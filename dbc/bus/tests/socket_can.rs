@@ -6,6 +6,7 @@
 #![allow(clippy::disallowed_methods, clippy::disallowed_macros)] // asks for XT28_VCAN, says what it skips
 
 use core::time::Duration;
+use std::io::{self, Write as _};
 use std::process::{Command, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Instant, SystemTime};
@@ -31,7 +32,7 @@ fn interface() -> Option<(String, MutexGuard<'static, ()>)> {
         Ok(_) => Some((name, guard)),
         Err(error) if asked.is_some() => panic!("XT28_VCAN is set, but: {error}"),
         Err(error) => {
-            eprintln!("SKIPPED: SocketCAN was not tested: {error}");
+            let _ = writeln!(io::stdout(), "SKIPPED: SocketCAN was not tested: {error}");
             None
         }
     }
@@ -148,7 +149,10 @@ fn can_utils_hear_us_and_we_hear_them() {
         Command::new("candump").args(["-L", "-n", "2", &name]).stdout(Stdio::piped()).spawn();
     let Ok(candump) = candump else {
         assert!(std::env::var_os("XT28_VCAN").is_none(), "can-utils are not installed");
-        eprintln!("SKIPPED: can-utils are not installed, so SocketCAN was not tested against them");
+        let _ = writeln!(
+            io::stdout(),
+            "SKIPPED: can-utils are not installed, so SocketCAN was not tested against them"
+        );
         return;
     };
     let mut bus = SocketCan::open(&name).unwrap();
@@ -189,7 +193,10 @@ fn an_interface_that_is_down_gone_or_no_can_is_named_with_its_remedy() {
     assert!(matches!(reason("xt28none"), OpenReason::NoInterface));
     if !ip("link add dev xt28test type vcan") {
         assert!(std::env::var_os("XT28_VCAN").is_none(), "interfaces cannot be made here");
-        eprintln!("SKIPPED: not allowed to make an interface, so none was taken down");
+        let _ = writeln!(
+            io::stdout(),
+            "SKIPPED: not allowed to make an interface, so none was taken down"
+        );
         return;
     }
     assert!(matches!(reason("xt28test"), OpenReason::Down));
@@ -220,7 +227,10 @@ impl SlowInterface {
         };
         let slow = Self;
         if !shaped {
-            eprintln!("SKIPPED: no traffic shaping here (tc, sch_tbf): ENOBUFS was not tested");
+            let _ = writeln!(
+                io::stdout(),
+                "SKIPPED: no traffic shaping here (tc, sch_tbf): ENOBUFS was not tested"
+            );
             return None;
         }
         Some(slow)

@@ -51,13 +51,14 @@ pub(crate) fn check(workspace: &Workspace) -> Outcome<Vec<Finding>> {
     let members = members(workspace)?;
     let mut found = rules::check(&graph, rules::RULES);
     found.extend(licence::check(&graph));
-    found.extend(check_files(workspace, &files, &members)?);
+    let tracked = workspace.tracked()?;
+    found.extend(check_files(workspace, &files, &tracked, &members)?);
     found.extend(check_libraries(workspace)?);
     let page = fs::read_to_string(workspace.root.join("ARCHITECTURE.md"))
         .map_err(|error| format!("ARCHITECTURE.md: {error}"))?;
-    let tree = architecture::Tree { members, files: &files };
+    let tree = architecture::Tree { members, files: &files, tracked: &tracked };
     found.extend(architecture::check(&page, &tree, &graph));
-    if !workspace.tracked()?.iter().any(|file| file == "Cargo.lock") {
+    if !tracked.iter().any(|file| file == "Cargo.lock") {
         found.push(Finding::new("Cargo.lock", "git does not track it; commit it"));
     }
     Ok(found)
@@ -75,9 +76,12 @@ fn members(workspace: &Workspace) -> Outcome<BTreeMap<String, String>> {
     Ok(members)
 }
 
+/// The rules of each kind of file. What is in a text matters once git tracks it: an editor's settings and a virtual
+/// environment lie in many a checkout, full of paths of its machine. Source is held to its rules from the start.
 fn check_files(
     workspace: &Workspace,
     files: &[String],
+    tracked: &[String],
     members: &BTreeMap<String, String>,
 ) -> Outcome<Vec<Finding>> {
     let packages: Vec<String> = members.keys().cloned().collect();
@@ -86,7 +90,9 @@ fn check_files(
         let bytes = fs::read(workspace.root.join(path))?;
         // Logs and pictures are not text to lint.
         let Ok(text) = String::from_utf8(bytes) else { continue };
-        found.extend(outside::check_text(path, &text));
+        if tracked.binary_search(path).is_ok() {
+            found.extend(outside::check_text(path, &text));
+        }
         if path == "Cargo.lock" {
             found.extend(outside::check_lock(path, &text));
         } else if path == "clippy.toml" {
@@ -114,6 +120,8 @@ fn check_libraries(workspace: &Workspace) -> Outcome<Vec<Finding>> {
 
 #[cfg(test)]
 mod tests {
+    use std::process::Command;
+
     use super::*;
 
     #[test]
@@ -121,5 +129,28 @@ mod tests {
         let found = check(&Workspace::load().unwrap()).unwrap();
         let lines: Vec<String> = found.iter().map(Finding::to_string).collect();
         assert!(lines.is_empty(), "{} findings:\n{}", lines.len(), lines.join("\n"));
+    }
+
+    #[test]
+    fn what_git_does_not_track_may_lean_on_its_machine() {
+        let folder = tempfile::tempdir().unwrap();
+        let git = |arguments: &[&str]| {
+            let git = Command::new("git").current_dir(folder.path()).args(arguments).status();
+            assert!(git.unwrap().success());
+        };
+        git(&["init", "--quiet"]);
+        for dir in [".venv", "docs"] {
+            fs::create_dir(folder.path().join(dir)).unwrap();
+        }
+        let home = concat!("VIRTUAL_ENV=/ho", "me/someone/xt28/.venv\n");
+        fs::write(folder.path().join(".venv/activate"), home).unwrap();
+        fs::write(folder.path().join("docs/page.md"), home).unwrap();
+        git(&["add", "docs"]);
+        let workspace = Workspace { root: folder.path().to_owned(), ..Workspace::load().unwrap() };
+        let (files, tracked) = (workspace.files().unwrap(), workspace.tracked().unwrap());
+        assert_eq!((files.len(), tracked.len()), (2, 1));
+        let found = check_files(&workspace, &files, &tracked, &BTreeMap::new()).unwrap();
+        let places: Vec<&str> = found.iter().map(|finding| finding.place.as_str()).collect();
+        assert_eq!(places, ["docs/page.md:1"]);
     }
 }

@@ -12,8 +12,10 @@ const PAGE: &str = "ARCHITECTURE.md";
 pub(crate) struct Tree<'a> {
     /// Folder of each member (relative) and its crate's name.
     pub(crate) members: BTreeMap<String, String>,
-    /// All files of the tree, relative.
+    /// All files of the tree, relative, those that git does not track yet included.
     pub(crate) files: &'a [String],
+    /// Those that git tracks.
+    pub(crate) tracked: &'a [String],
 }
 
 /// One entry of the code map, as the page has it.
@@ -43,7 +45,7 @@ pub(crate) fn check(page: &str, tree: &Tree<'_>, graph: &Graph) -> Vec<Finding> 
     for entry in entries.iter().filter(|entry| !tree.members.contains_key(&entry.folder)) {
         found.push(at(entry.line, format!("there is no crate in {}/", entry.folder)));
     }
-    found.extend(check_folders(page, tree.files));
+    found.extend(check_folders(page, tree.tracked));
     found.extend(check_paths(page, tree.files));
     found
 }
@@ -93,7 +95,7 @@ fn check_entry(entry: &Entry, name: &str, graph: &Graph) -> Vec<Finding> {
     missing.chain(extra).map(|message| at(entry.line, message)).collect()
 }
 
-/// Every top-level folder of the tree stands on the page.
+/// Every top-level folder that git tracks stands on the page: an editor's is nobody else's.
 fn check_folders(page: &str, files: &[String]) -> Vec<Finding> {
     let named: BTreeSet<&str> = page.lines().flat_map(quoted).collect();
     let tops: BTreeSet<&str> =
@@ -142,10 +144,13 @@ mod tests {
             ("xt28-dbc-model", true, &[("xt28-dbc", Kind::Dev)]),
             ("serde", false, &[]),
         ]);
-        let files = ["Cargo.toml", "dbc/src/lib.rs", "dbc/model/src/lib.rs"].map(String::from);
+        let files =
+            ["Cargo.toml", "dbc/src/lib.rs", "dbc/model/src/lib.rs", ".vscode/settings.json"];
+        let files = files.map(String::from);
         let members = [("dbc", "xt28-dbc"), ("dbc/model", "xt28-dbc-model")];
         let members = members.map(|(dir, name)| (dir.to_owned(), name.to_owned())).into();
-        let findings = check(page, &Tree { members, files: &files }, &graph);
+        let tracked = &files[..3];
+        let findings = check(page, &Tree { members, files: &files, tracked }, &graph);
         findings.into_iter().map(|finding| finding.to_string()).collect()
     }
 

@@ -20,6 +20,7 @@ mod finding;
 mod frame_check;
 mod ground;
 mod lockstep;
+mod mishap_times;
 mod picture;
 mod places;
 mod recording;

@@ -11,6 +11,9 @@ pub(crate) type Keys = BTreeMap<Spanned<String>, Value>;
 /// The lists of a scenario.
 #[derive(Debug, Default, Deserialize)]
 pub(crate) struct Places {
+    /// `[[effect]]`.
+    #[serde(default)]
+    effect: Vec<Keys>,
     /// `[[event]]`.
     #[serde(default)]
     event: Vec<Keys>,
@@ -26,6 +29,11 @@ impl Places {
     /// The places in `text`; none where it is no scenario.
     pub(crate) fn of(text: &str) -> Self {
         toml::from_str(text).unwrap_or_default()
+    }
+
+    /// Line, from 1, of `key` in the effect `index`.
+    pub(crate) fn effect(&self, index: usize, key: &str, text: &str) -> usize {
+        line_of(self.effect.get(index), key, text)
     }
 
     /// Line, from 1, of `key` in the event `index`.

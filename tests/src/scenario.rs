@@ -158,35 +158,6 @@ impl Scenario {
         })
     }
 
-    /// The first event or fault that makes no sense, or that would come after the run: its line, and what is
-    /// wrong.
-    fn mishap_problem(&self, text: &str) -> Option<(usize, String)> {
-        let places = Places::of(text);
-        let outside = |key: &str, at_s: f64| {
-            let run = format!("the run, 0 to {}", self.duration_s);
-            let is_outside = !(0.0..=self.duration_s).contains(&at_s);
-            is_outside.then(|| format!("{key} = {at_s} lies outside {run}"))
-        };
-        let of_event = |(index, event): (usize, &Event)| {
-            let at_the_end = || {
-                let problem =
-                    format!("at_s = {} is the end of the run: no tick follows", event.at_s);
-                (event.at_s >= self.duration_s).then_some(problem)
-            };
-            let problem = outside("at_s", event.at_s).or_else(at_the_end)?;
-            Some((places.event(index, "at_s", text), problem))
-        };
-        let of_fault = |(index, fault): (usize, &SensorFault)| match fault.check() {
-            Ok(()) => Some((places.fault(index, "from_s", text), outside("from_s", fault.from_s)?)),
-            Err(problem) => {
-                Some((places.fault(index, "sensor", text), format!("[[fault]]: {problem}")))
-            }
-        };
-        let mut events = self.events.iter().enumerate();
-        let mut faults = self.faults.iter().enumerate();
-        events.find_map(of_event).or_else(|| faults.find_map(of_fault))
-    }
-
     /// Refuses effects that this profile does not hear of, and those that would do nothing.
     fn check_effects(&self, text: &str, path: &Path) -> Result<(), ScenarioError> {
         let refuse = |name: &str, before: usize, problem: String| {
@@ -197,6 +168,13 @@ impl Scenario {
         };
         if let Err(error) = UnheardEffect::check(self.profile, &self.effects) {
             return refuse(error.effect, 0, error.to_string());
+        }
+        if let Some(at) = self.effects.iter().position(|entry| entry.severity <= 0.0) {
+            let line = Places::of(text).effect(at, "severity", text);
+            let name = self.effects[at].effect.name;
+            let problem =
+                format!("{name} would do nothing at severity = 0; give more, or remove it");
+            return Err(ScenarioError::Value { path: path.to_owned(), line, problem });
         }
         if let Some((at, problem)) = Entry::idle(&self.effects) {
             let effect = self.effects[at].effect;

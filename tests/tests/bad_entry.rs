@@ -54,3 +54,43 @@ fn a_fault_that_would_come_after_the_run_is_refused_as_an_event_is() {
     let said = refusal(&(fault(1.0) + &fault(31.0)));
     assert!(said.starts_with("a.toml:13: from_s = 31 lies outside the run, 0 to 30"), "{said}");
 }
+
+#[test]
+fn what_would_come_behind_the_last_tick_is_refused() {
+    // Ticks come every 10 ms, the last at 29.99 s.
+    let said = refusal(&event(29.995));
+    assert!(said.starts_with("a.toml:5: at_s = 29.995 is behind the run's last tick"), "{said}");
+    assert!(said.ends_with("give at most 29.99"), "{said}");
+    for from_s in [29.995, 30.0] {
+        let said = refusal(&fault(from_s));
+        assert!(said.starts_with(&format!("a.toml:8: from_s = {from_s} is behind")), "{said}");
+    }
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    for sound in [event(29.99), fault(29.99), event(0.0)] {
+        Scenario::parse(&format!("{HEAD}{sound}"), Path::new("a.toml"), none).expect(&sound);
+    }
+}
+
+#[test]
+fn a_fault_is_mended_within_the_run_or_stays() {
+    let mended = |to_s: f64| format!("{}to_s = {to_s}\n", fault(1.0));
+    let said = refusal(&(fault(2.0) + &mended(31.0)));
+    assert!(said.starts_with("a.toml:14: to_s = 31 lies outside the run, 0 to 30"), "{said}");
+    assert!(said.ends_with("leave it out if the fault stays"), "{said}");
+    let none = |_: &Path| Err(io::ErrorKind::NotFound.into());
+    Scenario::parse(&format!("{HEAD}{}", mended(30.0)), Path::new("a.toml"), none).unwrap();
+}
+
+#[test]
+fn an_effect_of_no_severity_is_refused() {
+    let late = |severity: &str| {
+        format!("[[effect]]\nname = \"arm-delay\"\nseverity = {severity}\ndelay_s = 0.1\n")
+    };
+    for none in ["0", "0.0", "-0.0"] {
+        let said = refusal(&(late("0.5") + &late(none)));
+        assert!(
+            said.starts_with("a.toml:10: arm-delay would do nothing at severity = 0"),
+            "{said}"
+        );
+    }
+}

@@ -9,12 +9,12 @@ use crate::places::{Places, line_at};
 /// line, and what is wrong.
 pub(crate) fn problem(text: &str, duration_s: f64) -> Option<(usize, String)> {
     Places::of(text).expect.iter().flatten().find_map(|(name, keys)| {
-        let problem = of_keys(keys.as_table()?, duration_s)?;
+        let problem = of_keys(name.get_ref(), keys.as_table()?, duration_s)?;
         Some((line_at(text, name.span().start), format!("{}: {problem}", name.get_ref())))
     })
 }
 
-fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
+fn of_keys(name: &str, keys: &Table, duration_s: f64) -> Option<String> {
     keys.iter().find_map(|(key, value)| {
         if value.as_array().is_some_and(Vec::is_empty) {
             return Some(format!("{key} = [] must name at least one"));
@@ -28,7 +28,9 @@ fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
             Value::Array(list) => list.iter().filter_map(number).collect(),
             one => number(one).into_iter().collect::<Vec<_>>(),
         };
-        let sense = |value: &f64| of_number(keys, (key, *value), duration_s);
+        let sense = |value: &f64| {
+            of_limit(name, key, *value).or_else(|| of_number(keys, (key, *value), duration_s))
+        };
         if let Some(problem) = numbers.iter().find_map(sense) {
             return Some(problem);
         }
@@ -42,6 +44,19 @@ fn of_keys(keys: &Table, duration_s: f64) -> Option<String> {
 fn stays(value: &Value) -> Option<&str> {
     let same = value.as_array()?.windows(2).find(|pair| pair[0].is_str() && pair[0] == pair[1])?;
     same[0].as_str()
+}
+
+/// What a number cannot be in this expectation, though it may in another.
+fn of_limit(name: &str, key: &str, value: f64) -> Option<String> {
+    match (name, key) {
+        ("stays-level", "roll_deg" | "pitch_deg") if value < 0.0 => {
+            Some(format!("{key} = {value} must be at least zero: it is the limit either way"))
+        }
+        ("stands-still", "over_s") if value <= 0.0 => {
+            Some(format!("{key} = {value} must be above zero: an instant shows no standing"))
+        }
+        _ => None,
+    }
 }
 
 fn of_number(keys: &Table, (key, value): (&str, f64), duration_s: f64) -> Option<String> {
@@ -73,6 +88,30 @@ fn number(value: &Value) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_limit_that_nothing_keeps_is_found_where_it_is_one() {
+        let of = |expectation: &str| {
+            problem(&format!("[[expect]]\n{expectation}"), 45.0)
+                .map_or_else(String::new, |(_, problem)| problem)
+        };
+        for (expectation, wanted) in [
+            (
+                "stays-level = { roll_deg = -2, pitch_deg = 2 }",
+                "stays-level: roll_deg = -2 must be at least zero",
+            ),
+            (
+                "stays-level = { roll_deg = 2, pitch_deg = -0.5 }",
+                "stays-level: pitch_deg = -0.5 must be at least",
+            ),
+            ("stands-still = { over_s = 0 }", "stands-still: over_s = 0 must be above zero"),
+            ("stands-still = { over_s = -1 }", "stands-still: over_s = -1 must be above zero"),
+        ] {
+            assert!(of(expectation).starts_with(wanted), "{}", of(expectation));
+        }
+        assert_eq!(of("leans = { roll_deg = -2, within_deg = 1 }"), "");
+        assert_eq!(of("stays-level = { roll_deg = 0, pitch_deg = 2 }"), "");
+    }
 
     #[test]
     fn a_number_that_no_run_can_meet_is_found() {

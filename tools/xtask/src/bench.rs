@@ -1,7 +1,8 @@
 //! `cargo xtask bench`: what a run costs, and that it repeats.
 
 use std::fs;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Command, Output};
 
 use clap::Args;
 use serde_json::Value;
@@ -66,24 +67,20 @@ impl Bench {
         Ok(repeats)
     }
 
-    fn run(&self, workspace: &Workspace, solver: &str, log: &std::path::Path) -> Outcome<Figures> {
+    fn run(&self, workspace: &Workspace, solver: &str, log: &Path) -> Outcome<Figures> {
         let program = workspace.release().join("xt28");
-        // Pinned where the system can: the figure is for one core.
-        let pinned = Command::new("taskset").arg("--version").output().is_ok();
-        let mut command = if pinned { Command::new("taskset") } else { Command::new(&program) };
-        if pinned {
-            command.args(["--cpu-list", "0"]).arg(&program);
-        }
-        let run = command
+        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let run = on_one_cpu(first_allowed_cpu(&status), &program)
             .args(["run", &self.scenario, "--solver", solver, "--json", "--record"])
             .arg(log)
             .output()
             .map_err(|error| format!("{}: {error}", program.display()))?;
         // 1 is a verdict on the machine, which does not change what the run cost.
         if !matches!(run.status.code(), Some(0 | 1)) {
-            return Err(String::from_utf8_lossy(&run.stderr).trim().to_owned().into());
+            return Err(said(&run).into());
         }
-        let report: Value = serde_json::from_slice(&run.stdout)?;
+        let report: Value = serde_json::from_slice(&run.stdout)
+            .map_err(|error| format!("{error}: {}", said(&run)))?;
         let figure = |name: &str| {
             report[name].as_f64().ok_or_else(|| format!("the report has no number `{name}`"))
         };
@@ -92,5 +89,69 @@ impl Bench {
             wall_s: figure("wall_s")?,
             physics_step_us: figure("physics_step_us")?,
         })
+    }
+}
+
+/// The first processor that this process may run on, by what `/proc/self/status` says: in a container or under a job
+/// scheduler it need not be the first of the machine.
+fn first_allowed_cpu(status: &str) -> Option<u32> {
+    let list = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:"))?;
+    let digits = list.trim().split(|c: char| !c.is_ascii_digit()).next()?;
+    digits.parse().ok()
+}
+
+/// A command of `program`, pinned where the system can and lets it: the figure is for one core.
+fn on_one_cpu(cpu: Option<u32>, program: &Path) -> Command {
+    let pinned = |cpu: u32| {
+        let mut command = Command::new("taskset");
+        command.args(["--cpu-list", &cpu.to_string()]);
+        command
+    };
+    let works =
+        |cpu: &u32| pinned(*cpu).arg("true").output().is_ok_and(|probe| probe.status.success());
+    match cpu.filter(works) {
+        Some(cpu) => {
+            let mut command = pinned(cpu);
+            command.arg(program);
+            command
+        }
+        None => Command::new(program),
+    }
+}
+
+/// What a run said that left no report: its talk, or that there was none.
+fn said(run: &Output) -> String {
+    let talk = String::from_utf8_lossy(&run.stderr);
+    if talk.trim().is_empty() { format!("no word, {}", run.status) } else { talk.trim().to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_processor_that_is_allowed_is_taken() {
+        let of = |list: &str| {
+            first_allowed_cpu(&format!(
+                "Name:\txtask\nCpus_allowed:\tf0\nCpus_allowed_list:\t{list}\nMems:\t0\n"
+            ))
+        };
+        let lists = [("0-15", 0), ("4-7", 4), ("6,8-11", 6), ("13", 13)];
+        assert!(lists.iter().all(|(list, cpu)| of(list) == Some(*cpu)), "{lists:?}");
+        assert_eq!([of(""), first_allowed_cpu("")], [None; 2]);
+    }
+
+    #[test]
+    fn a_processor_that_is_not_there_is_not_pinned_to() {
+        let program = |cpu| on_one_cpu(cpu, Path::new("xt28")).get_program().to_owned();
+        assert_eq!(program(None), "xt28");
+        assert_eq!(program(Some(999_999)), "xt28");
+    }
+
+    #[test]
+    fn a_run_without_a_report_says_why() {
+        let of = |script: &str| said(&Command::new("sh").args(["-c", script]).output().unwrap());
+        assert_eq!(of("echo no such scenario >&2; exit 2"), "no such scenario");
+        assert!(of("exit 3").starts_with("no word, "));
     }
 }

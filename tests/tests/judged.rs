@@ -130,6 +130,31 @@ fn arms_move_at_the_cap_of_their_valves() {
     assert_eq!(verdicts(expect, &Trace::default()), [false]);
 }
 
+/// Arms that stand at 0.25 m until they are told to go to zero at 1 s, and then go at `speed_m_s`, out > 0.
+fn called_in(speed_m_s: f64) -> Trace {
+    trace(|trace, at_s| {
+        let target_m = if at_s < 1.0 { 0.25 } else { 0.0 };
+        let stroke_m = (0.25 + speed_m_s * (at_s - 1.0).max(0.0)).clamp(0.0, 0.5);
+        trace.stroke_target_m.push(at_s, PerWheel::splat(Some(target_m)));
+        trace.stroke_m.push(at_s, PerWheel::splat((stroke_m * 1e3).floor() * 1e-3));
+    })
+}
+
+#[test]
+fn arms_that_run_away_from_their_target_do_not_move_at_the_cap() {
+    let expect = "arm-speed = { wheels = [\"FR\"], within_percent = 5 }";
+    let cap_m_s = 0.3 * 0.212;
+    assert_eq!(verdicts(expect, &called_in(-cap_m_s)), [true]);
+    let away = judge(expect, &called_in(cap_m_s));
+    assert!(!away[0].passed() && away[0].measured.is_some_and(|m_s| m_s < 0.0), "{away:?}");
+    let out = trace(|trace, at_s| {
+        let stroke_m = (0.25 - cap_m_s * (at_s - 1.0).max(0.0)).max(0.0);
+        trace.stroke_target_m.push(at_s, PerWheel::splat(Some(0.5)));
+        trace.stroke_m.push(at_s, PerWheel::splat((stroke_m * 1e3).floor() * 1e-3));
+    });
+    assert_eq!(verdicts(expect, &out), [false]);
+}
+
 /// A bend with the front joint at 10 degrees and the rear at `ratio` of it, driven at `speed_m_s`.
 fn bend(ratio: f64, speed_m_s: f64) -> Trace {
     trace(|trace, at_s| {

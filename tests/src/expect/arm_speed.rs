@@ -59,14 +59,14 @@ impl ArmSpeed {
         #[allow(clippy::cast_precision_loss)] // a handful
         let mean_m_s = speeds_m_s.iter().sum::<f64>() / speeds_m_s.len() as f64;
         let slowest = speeds_m_s.iter().copied().fold(f64::INFINITY, f64::min);
-        let fastest = speeds_m_s.iter().copied().fold(0.0, f64::max);
+        let fastest = speeds_m_s.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let count = speeds_m_s.len();
         let note = format!("{count} movements, {slowest:.4} to {fastest:.4}");
         vec![Finding::of(what, mean_m_s, wanted, "m/s").noting(note)]
     }
 }
 
-/// Speeds of every movement of `wheel` in which the position controller is saturated, m/s.
+/// Speeds towards the target of every movement of `wheel` in which the position controller is saturated, m/s.
 fn capped_speeds_m_s(evidence: &Evidence<'_>, wheel: Wheel) -> Vec<f64> {
     let Evidence { trace, machine, .. } = evidence;
     let saturating_m = saturating_error_m(machine);
@@ -82,7 +82,9 @@ fn capped_speeds_m_s(evidence: &Evidence<'_>, wheel: Wheel) -> Vec<f64> {
             let start_s = movement[0].at_s + TAKE_UP_S;
             let steady = &movement[movement.partition_point(|s| s.at_s < start_s)..];
             let long = steady.last().is_some_and(|last| last.at_s - start_s >= STEADY_S);
-            speeds.extend(slope(steady, |stroke| stroke[wheel]).filter(|_| long).map(f64::abs));
+            // Towards the target > 0: an arm that runs away from it at full speed is not a fast one.
+            let towards_m_s = slope(steady, |stroke| sign * stroke[wheel]);
+            speeds.extend(towards_m_s.filter(|_| long));
         }
     }
     speeds

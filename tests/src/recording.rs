@@ -2,11 +2,12 @@
 
 use std::io::BufRead;
 
+use ecu_emu::Profile;
 use xt28_bus::candump::{ReadError, Reader};
 use xt28_machine::SimTime;
 
 use crate::decode::Decoder;
-use crate::{Conditions, Driven, Report, Setup, Trace, Truth};
+use crate::{Bound, Conditions, Driven, Finding, Report, Setup, Trace, Truth};
 
 /// One recorded run, on either kind of bus.
 #[derive(Clone, Debug)]
@@ -43,12 +44,23 @@ impl Recording {
     /// Judges the run by the scenario's expectations.
     #[must_use]
     pub fn report(&self, setup: &Setup, bus: &str) -> Report {
+        let mut findings = setup.judge(&self.trace, self.truth.as_ref());
+        // The ECUs of 2016 have nothing that a gateway could arm.
+        let unarmed = self.driven.as_ref().filter(|driven| {
+            setup.scenario.profile == Profile::Paper && driven.armed_at_s.is_none()
+        });
+        findings.extend(unarmed.map(|driven| {
+            // Nothing was driven, whatever an expectation finds of a machine that stands or slides.
+            let why = driven.reason.clone().unwrap_or_default();
+            let by = Bound::AtMost(setup.scenario.duration_s);
+            Finding::missing("gateway armed", by, "s", why)
+        }));
         Report {
             scenario: setup.scenario.name.clone(),
             seed: setup.seed,
             bus: bus.to_owned(),
             conditions: Conditions::new(setup),
-            findings: setup.judge(&self.trace, self.truth.as_ref()),
+            findings,
             driven: self.driven.clone(),
             simulated_s: setup.scenario.duration_s,
             cost: None,

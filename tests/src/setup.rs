@@ -71,7 +71,8 @@ impl Setup {
         match &self.scenario.script {
             Some(Script { path, text }) => {
                 let limits = GatewayConfig::new(&self.machine).limits;
-                let script = policy::Script::parse(text, path, &limits);
+                let run_s = self.scenario.duration_s;
+                let script = policy::Script::parse_for(run_s, text, path, &limits);
                 Ok(Box::new(script.map_err(SpecError::from)?))
             }
             None => policy::from_spec(&self.scenario.policy, &self.machine, Some(&self.map)),

@@ -2,6 +2,7 @@
 //! comes late.
 
 use std::io;
+use std::path::Path;
 use std::time::Duration;
 
 use xt28_machine::{Machine, PerWheel};
@@ -78,4 +79,23 @@ fn a_stop_that_takes_five_seconds_is_seen() {
         assert!(stands(0.9), "{name}");
         assert!(!stands(2.1) && !stands(5.0), "{name}");
     }
+}
+
+/// On a slope beyond the safety kernel's the gateway never arms, and nothing that is then asked was driven.
+#[test]
+fn a_run_whose_gateway_never_arms_has_failed() {
+    let report = |grade: f64| {
+        let text = format!(
+            "title = \"t\"\npolicy = \"hold\"\nduration_s = 2\n[terrain.slope]\ngrade = {grade}\n\
+             [[expect]]\nstands-still = {{ below_m_s = 100 }}\n"
+        );
+        let nothing = |_: &Path| Err(io::ErrorKind::NotFound.into());
+        run(Scenario::parse(&text, Path::new("t.toml"), nothing).unwrap())
+    };
+    assert!(report(0.1).passed(), "\n{}", report(0.1).table());
+    let steep = report(0.7);
+    let [unarmed] = steep.findings.iter().filter(|f| !f.passed()).collect::<Vec<_>>()[..] else {
+        panic!("\n{}", steep.table())
+    };
+    assert!(unarmed.what == "gateway armed" && unarmed.note.contains("pitch"), "{unarmed:?}");
 }

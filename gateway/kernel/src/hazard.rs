@@ -42,9 +42,11 @@ pub(crate) fn before_arming(
     if !input.measured.is_finite() {
         return Some(Reason::MeasurementNotFinite);
     }
-    // While armed it has to last: a single odd reading holds targets back and is gone again.
+    // While armed it has to last: a single odd reading holds targets back and is gone again. The ECU has the first
+    // word on a sensor of its own.
+    let implausible_ns = now_ns.saturating_sub(state.plausible_ns);
     if !input.measured.is_plausible(limits)
-        && (!state.is_armed() || limits.sensors.missed(Some(state.plausible_ns), now_ns))
+        && (!state.is_armed() || implausible_ns > limits.steady_ns)
     {
         return Some(Reason::MeasurementImplausible);
     }

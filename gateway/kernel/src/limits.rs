@@ -64,7 +64,8 @@ pub struct Limits {
     pub stroke_read_m: [f64; 2],
     /// A joint sensor in order reads between plus and minus this, rad.
     pub angle_read_rad: f64,
-    /// A reading is one to start from when it has not leapt for so long, ns.
+    /// A reading is one to start from when it has not leapt for so long, and stops an armed machine when it was no
+    /// reading of a sensor in order for longer, ns.
     pub steady_ns: u64,
     /// Silence allowed to each ECU's status frame.
     pub status: Deadline,

@@ -224,7 +224,7 @@ fn what_cannot_be_measured_forbids_arming_and_stops_where_it_lasts() {
                 .take_while(|_| bench.run(Order::None, coast()) == Verdict::Allow(coast()))
                 .count()
         };
-        let span = usize::try_from(LIMITS.sensors.span_ns() / TICK_NS).unwrap();
+        let span = usize::try_from(LIMITS.steady_ns / TICK_NS).unwrap();
         assert_eq!(lasts(&mut bench), span);
         assert_eq!(bench.run(Order::None, coast()), refused);
         // A glitch is ridden through.

@@ -64,6 +64,21 @@ impl Script {
         ScriptFile::parse(text, path, limits).map(Self::new)
     }
 
+    /// The same for a run of `run_s` s, within which each command has to come.
+    ///
+    /// # Errors
+    /// [`ScriptError::Parse`].
+    pub fn parse_for(
+        run_s: f64,
+        text: &str,
+        path: &Path,
+        limits: &Limits,
+    ) -> Result<Self, ScriptError> {
+        let file = ScriptFile::parse(text, path, limits)?;
+        file.check_run(run_s, text, path)?;
+        Ok(Self::new(file))
+    }
+
     fn new(file: ScriptFile) -> Self {
         let ends = file.commands.iter().map(|entry| entry.at_s.get_ref() + entry.ramp_s);
         let end_s = file.end_s.map_or_else(|| ends.fold(0.0, f64::max), toml::Spanned::into_inner);
@@ -211,6 +226,14 @@ opening_percent = [10, -10, 0, 0, 30, -30]
     fn at(t_s: f64) -> Command {
         let start = Start { stroke_m: [0.17; 6], front_angle_rad: 0.0 };
         Script::parse(TEXT, Path::new("t.toml"), &Limits::XT28).unwrap().at(t_s, &start)
+    }
+
+    #[test]
+    fn what_a_run_has_no_time_for_is_refused() {
+        let parse = |run_s| Script::parse_for(run_s, TEXT, Path::new("s.toml"), &Limits::XT28);
+        assert!(parse(100.0).is_ok());
+        let error = parse(2.0).unwrap_err().to_string();
+        assert!(error.starts_with("s.toml:6: at_s = 2 lies outside the run, 0 to 2"), "{error}");
     }
 
     #[test]

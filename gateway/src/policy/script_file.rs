@@ -112,6 +112,20 @@ impl ScriptFile {
     }
 }
 
+impl ScriptFile {
+    /// Refuses a command that would never be played in a run of `run_s` s.
+    pub(super) fn check_run(&self, run_s: f64, text: &str, path: &Path) -> Result<(), ScriptError> {
+        let late = self.commands.iter().find(|entry| *entry.at_s.get_ref() >= run_s);
+        let Some(Entry { at_s, .. }) = late else { return Ok(()) };
+        let problem = format!(
+            "at_s = {} lies outside the run, 0 to {run_s}, and would never be played",
+            at_s.get_ref()
+        );
+        let line = line_at(text.as_bytes(), at_s.span().start);
+        Err(ScriptError::Parse { path: path.to_owned(), line, problem })
+    }
+}
+
 impl Entry {
     /// Refuses what is outside the safety kernel's absolute limits, so that a script runs as written. Its
     /// rates still apply: a step is a ramp at the machine.

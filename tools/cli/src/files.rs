@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use same_file::is_same_file;
 use serde::de::IgnoredAny;
+use xt28_sim::effects::Overlay;
 
 use crate::Failure;
 
@@ -16,8 +17,8 @@ pub(crate) enum Form {
     Json,
     /// A page or a picture: HTML, SVG.
     Page,
-    /// TOML.
-    Toml,
+    /// An overlay: TOML of effects alone, where a scenario or a machine file has more.
+    Overlay,
     /// Whatever: who writes it looks for itself.
     Any,
 }
@@ -30,7 +31,7 @@ impl Form {
             || match self {
                 Self::Json => serde_json::from_str::<IgnoredAny>(text).is_ok(),
                 Self::Page => text.trim_start().starts_with('<'),
-                Self::Toml => toml::from_str::<toml::Table>(text).is_ok(),
+                Self::Overlay => Overlay::parse(text, Path::new("")).is_ok(),
                 Self::Any => true,
             }
     }
@@ -40,7 +41,7 @@ impl Form {
         match self {
             Self::Json => "JSON",
             Self::Page => "page or picture",
-            Self::Toml => "TOML",
+            Self::Overlay => "overlay of effects",
             Self::Any => "file",
         }
     }
@@ -199,7 +200,14 @@ mod tests {
         assert!(refused_over(b"", as_json).is_none());
         assert!(refused_over(b"<!doctype html>", ["a.json", "there"]).is_none());
         assert!(refused_over(b"{}", ["a.json", "there"]).is_some());
-        assert!(Form::Toml.reads(b"[effects]\nx = 1\n") && !Form::Toml.reads(b"my notes"));
+        let effect = "[[effect]]\nname = \"arm-delay\"\ndelay_s = 0.1\n";
+        let scenario = format!("title = \"t\"\n{effect}");
+        assert!(
+            ["effect = []\n", effect, ""].iter().all(|text| Form::Overlay.reads(text.as_bytes()))
+        );
+        for kept in ["my notes", "[masses]\n", "end_s = 1\n", scenario.as_str()] {
+            assert!(!Form::Overlay.reads(kept.as_bytes()), "{kept}");
+        }
     }
 
     #[test]

@@ -210,6 +210,39 @@ fn a_drive_is_not_written_over_a_file_in_another_encoding() {
     assert!(!folder.path().join("taken.script.toml").exists());
 }
 
+/// A log and a database are read long after the outputs were looked at.
+#[test]
+fn no_toml_file_of_somebody_is_replaced_by_an_overlay_or_a_drive() {
+    let folder = folder_with(&[("s.toml", SCENARIO), ("a.log", OLD), ("a.dbc", "")]);
+    let [mine, drive, log, dbc] =
+        ["s.toml", "d.toml", "a.log", "a.dbc"].map(|name| path(&folder, name));
+    let diagnose = |option, file| refusal(&["gap", "diagnose", &log, "--dbc", &dbc, option, file]);
+    let other = "it is there already and is not what would be written";
+    let talk = diagnose("--overlay", &mine);
+    assert!(talk.contains("is no overlay of effects to be replaced; give --overlay"), "{talk}");
+    let talk = refusal(&["gap", "drive", "straight", "--out", &mine]);
+    assert!(talk.contains(&format!("{mine}: {other}; give --out another")), "{talk}");
+    let talk = diagnose("--next", &mine);
+    assert!(talk.contains(&format!("{mine}: {other}; give --next another")), "{talk}");
+    assert_eq!(fs::read_to_string(&mine).unwrap(), SCENARIO);
+    // A drive as it was written may be that of the next diagnosis; another drive is none.
+    assert!(xt28(&["gap", "drive", "straight", "--out", &drive]).status.success());
+    assert!(!diagnose("--next", &drive).contains(other));
+    refusal(&["gap", "drive", "mixed", "--out", &drive]);
+    for name in ["d.toml", "d.script.toml"] {
+        let written = fs::read_to_string(path(&folder, name)).unwrap();
+        let edited = format!("{written}# mine\n");
+        fs::write(path(&folder, name), &edited).unwrap();
+        let talk = refusal(&["gap", "drive", "straight", "--out", &drive]);
+        assert!(talk.contains(&format!("{name}: {other}; give --out another")), "{talk}");
+        let talk = diagnose("--next", &drive);
+        assert!(talk.contains(&format!("{name}: {other}; give --next another")), "{talk}");
+        assert_eq!(fs::read_to_string(path(&folder, name)).unwrap(), edited);
+        fs::write(path(&folder, name), written).unwrap();
+    }
+    assert!(xt28(&["gap", "drive", "straight", "--out", &drive]).status.success());
+}
+
 #[test]
 fn a_setting_that_is_given_twice_or_is_no_number_is_refused() {
     let talk = refusal(&["effects", "arm-delay", "delay_s=0.1", "delay_s=0.2"]);

@@ -15,7 +15,7 @@ use xt28_sim::effects::Overlay;
 
 use super::about;
 use super::asked::{Answered, Asked, Input};
-use super::drive::{ensure_free, script_beside, write_drive};
+use super::drive::{ensure_a_drives, script_beside, write_drive};
 use super::remarks::{Given, remarks};
 use crate::files::{Form, Outputs, write};
 use crate::ground::Ground;
@@ -87,6 +87,8 @@ pub(crate) struct Diagnose {
     overlay: Option<PathBuf>,
 }
 
+/// The option that names where the drive to make next is written.
+const NEXT: &str = "--next";
 /// What is noted where the drive to make next, if any, is for something else.
 const NOTHING_APART: &str =
     "No scripted drive would tell the likely causes apart better than these logs do";
@@ -94,7 +96,7 @@ const NOTHING_APART: &str =
 impl Diagnose {
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
         self.ensure_outputs_apart()?;
-        self.next.as_deref().map_or(Ok(()), ensure_free)?;
+        self.next.as_deref().map_or(Ok(()), |path| ensure_a_drives(path, NEXT))?;
         let start = Instant::now();
         let bar = progress_bar();
         bar.set_message("reading logs");
@@ -129,12 +131,12 @@ impl Diagnose {
     fn ensure_outputs_apart(&self) -> Result<(), Failure> {
         let script = self.next.as_deref().map(script_beside);
         let outputs = Outputs::new([
-            ("--next", Form::Toml, self.next.as_ref()),
-            // That one is a script's is looked at where it is written.
+            // That both are a drive's is looked at where drives are written.
+            (NEXT, Form::Any, self.next.as_ref()),
             ("--next, for its script,", Form::Any, script.as_ref()),
             ("--json", Form::Json, self.json.as_ref()),
             ("--report", Form::Page, self.report.as_ref()),
-            ("--overlay", Form::Toml, self.overlay.as_ref()),
+            ("--overlay", Form::Overlay, self.overlay.as_ref()),
         ]);
         let files = [&self.mapping, &self.machine, &self.effects, &self.terrain];
         let about = about(&self.logs, self.about.as_ref())?;
@@ -192,7 +194,7 @@ impl Diagnose {
         };
         diagnosis.next = Some(next);
         let Some(path) = &self.next else { return Ok(()) };
-        write_drive(path, &manoeuvre, &good_for)
+        write_drive((path, NEXT), &manoeuvre, &good_for)
     }
 
     /// What the report is about.

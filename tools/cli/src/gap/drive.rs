@@ -41,21 +41,11 @@ impl Drive {
                 let problem = "a scenario's file ends in .toml; give --out such a name";
                 return Err(format!("{}: {problem}", out.display()).into());
             }
-            None => unnamed(name)?,
+            None => PathBuf::from(format!("{name}.toml")),
         };
-        write_drive(&out, &manoeuvre, "shows what a diagnosis missed")?;
+        write_drive((&out, "--out"), &manoeuvre, "shows what a diagnosis missed")?;
         Ok(Verdict::Positive)
     }
-}
-
-/// Where a drive goes that nobody gave a file for: what is there under its name must be a drive too.
-fn unnamed(name: &str) -> Result<PathBuf, Failure> {
-    let out = PathBuf::from(format!("{name}.toml"));
-    if is_other(&out, Manoeuvre::is_scenario) {
-        let problem = "is there and is not a drive; name another file with --out";
-        return Err(format!("{} {problem}", out.display()).into());
-    }
-    Ok(out)
 }
 
 /// Whether something is at `path` that is none of ours, in whatever encoding; what cannot be read is not ours.
@@ -82,17 +72,52 @@ pub(super) fn ensure_free(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes `manoeuvre` into `path`, and its script beside it.
+/// Refuses to replace what is at `path`, which `option` names, with anything else: a drive is made again in a moment,
+/// and what somebody wrote or changed is not.
+fn ensure_same(path: &Path, option: &str, is_same: impl Fn(&str) -> bool) -> Result<(), Failure> {
+    // What is no file keeps nothing, and a file without a word has nothing to keep.
+    if path.is_file() && is_other(path, |text| text.trim().is_empty() || is_same(text)) {
+        let problem = "it is there already and is not what would be written";
+        return Err(format!("{}: {problem}; give {option} another", path.display()).into());
+    }
+    Ok(())
+}
+
+/// Refuses what is at `path`, or where its script goes, and is no drive as it was written: before anybody knows
+/// which drive it will be.
+pub(super) fn ensure_a_drives(path: &Path, option: &str) -> Result<(), Failure> {
+    ensure_free(path)?;
+    let (script, name) = script_of(path);
+    let all = Manoeuvre::all();
+    // Its first line says what a drive is good for, which is told of each diagnosis anew.
+    let body = |text: &str| text.split_once('\n').map(|(_, body)| body.to_owned());
+    ensure_same(path, option, |text| {
+        let is_of = |one: &Manoeuvre| body(text) == body(&one.scenario(&name, ""));
+        Manoeuvre::is_scenario(text) && all.iter().any(is_of)
+    })?;
+    ensure_same(&script, option, |text| all.iter().any(|one| one.script() == text))
+}
+
+/// Where the script of a scenario at `path` goes, and how the scenario names it.
+fn script_of(path: &Path) -> (PathBuf, String) {
+    let script = script_beside(path);
+    let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    (script, name)
+}
+
+/// Writes `manoeuvre` into the file that an option names, and its script beside it.
 pub(super) fn write_drive(
-    path: &Path,
+    (path, option): (&Path, &str),
     manoeuvre: &Manoeuvre,
     good_for: &str,
 ) -> Result<(), Failure> {
     ensure_free(path)?;
-    let script = script_beside(path);
+    let (script, name) = script_of(path);
+    let texts = (manoeuvre.scenario(&name, good_for), manoeuvre.script());
+    ensure_same(path, option, |text| text == texts.0)?;
+    ensure_same(&script, option, |text| text == texts.1)?;
     // Half a drive is none.
     writable([script.as_path(), path])?;
-    let name = script.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    write(&script, &manoeuvre.script())?;
-    write(path, &manoeuvre.scenario(&name, good_for))
+    write(&script, &texts.1)?;
+    write(path, &texts.0)
 }

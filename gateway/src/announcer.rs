@@ -7,6 +7,11 @@ use std::time::Duration;
 /// Most lines that wait; those beyond are lost.
 const LINES_MAX: usize = 64;
 
+/// Says a line at once, for where nothing drives. Whoever does not read it misses it.
+pub(crate) fn announce(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
 /// A thread that says what it is given.
 #[derive(Debug)]
 pub(crate) struct Announcer {
@@ -22,8 +27,7 @@ impl Announcer {
         let (done, said) = sync_channel(0);
         let speak = move || {
             for line in given {
-                // A reader that is gone misses it.
-                let _ = writeln!(std::io::stderr(), "{line}");
+                announce(&line);
             }
             drop(done);
         };

@@ -1,7 +1,7 @@
 //! `gateway`: a policy at the wheel of an Xt28, over SocketCAN and a GNSS receiver.
 #![forbid(unsafe_code)]
 // A binary is the edge: it may read the clock, print and exit.
-#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+#![allow(clippy::disallowed_methods)]
 
 mod announcer;
 mod args;
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
             status
         }
         Err(problem) => {
-            eprintln!("gateway: {problem}");
+            announcer::announce(&format!("gateway: {problem}"));
             ExitCode::from(2)
         }
     }

@@ -14,7 +14,7 @@ use xt28_dbc::Outbox;
 use xt28_machine::{Machine, SimTime};
 use xt28_terrain::{Terrain, TerrainError, TerrainSpec};
 
-use crate::announcer::Announcer;
+use crate::announcer::{Announcer, announce};
 use crate::args::Args;
 use crate::freshness::Freshness;
 use crate::lateness::Lateness;
@@ -75,9 +75,9 @@ pub(crate) fn run(args: &Args) -> Result<(Finished, Announcer), Problem> {
     }
     let wire = Wire::open(&args.bus, args.record.as_deref(), SystemTime::now())?;
     if let Some(remote) = &remote {
-        eprintln!("gateway: a controller may connect to ws://{}", remote.address());
+        announce(&format!("gateway: a controller may connect to ws://{}", remote.address()));
         if !config.arm_at_start {
-            eprintln!("gateway: others than this machine may drive, so it arms on SIGUSR1 alone");
+            announce("gateway: others than this machine may drive, so it arms on SIGUSR1 alone");
         }
     }
     let gateway = Gateway::new(&machine, config, policy);

@@ -55,6 +55,19 @@ fn a_machine_file_with_an_unknown_key() {
     assert!(error.contains(":2:") && error.contains("arm_lb"), "{error}");
 }
 
+/// Who ran it goes by the status.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_refusal_that_nobody_can_read_is_one_all_the_same() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let status = Command::new(env!("CARGO_BIN_EXE_gateway"))
+        .args(["--bus", "can99", "--policy", "hold"])
+        .stderr(full)
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(2));
+}
+
 #[test]
 fn help_names_the_policies_and_the_exit_codes() {
     let output = gateway(&["--help"]);

@@ -10,6 +10,7 @@ use xt28_scenarios::{INTERFACE, Picture, Recording, Report, RunError, Setup};
 
 use crate::Failure;
 use crate::files::{Form, Outputs, refusal, write};
+use crate::say::tell;
 
 /// Where a run's files go.
 #[derive(Debug)]
@@ -108,7 +109,7 @@ impl Artefacts {
         report: &Report,
     ) -> Result<(), Failure> {
         if let Some(log) = &self.log {
-            eprintln!("wrote {}", log.display());
+            tell!("wrote {}", log.display());
         }
         let Some(folder) = &self.folder else {
             return Ok(());

@@ -8,6 +8,7 @@ use serde::de::IgnoredAny;
 use xt28_sim::effects::Overlay;
 
 use crate::Failure;
+use crate::say::tell;
 
 /// What a file holds once it is written, and all that one there may hold to be replaced by it: an answer given the
 /// name of a log must not cost the log.
@@ -146,7 +147,7 @@ fn place(path: &Path) -> Option<PathBuf> {
 /// Writes `text` into `path`, and says so.
 pub(crate) fn write(path: &Path, text: &str) -> Result<(), Failure> {
     fs::write(path, text).map_err(|error| refusal(path, &error))?;
-    eprintln!("wrote {}", path.display());
+    tell!("wrote {}", path.display());
     Ok(())
 }
 

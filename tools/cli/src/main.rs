@@ -1,7 +1,7 @@
 //! `xt28`: the one command people type. One file a subcommand.
 #![forbid(unsafe_code)]
-// A binary is the edge of the house: it prints, reads clocks and arguments, and exits.
-#![allow(clippy::disallowed_methods, clippy::disallowed_macros)]
+// A binary is the edge of the house: it reads clocks and arguments, and exits. It prints by `say` and `tell` alone.
+#![allow(clippy::disallowed_methods)]
 
 mod artefacts;
 mod config;
@@ -24,6 +24,8 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use crate::say::tell;
 
 /// A bench for the Xt28: its two ECUs and a physics vehicle on a CAN bus, and what must hold.
 ///
@@ -71,7 +73,7 @@ fn main() -> ExitCode {
         Ok(Verdict::Positive) => ExitCode::SUCCESS,
         Ok(Verdict::Negative) => ExitCode::from(1),
         Err(failure) => {
-            eprintln!("xt28: {failure}");
+            tell!("xt28: {failure}");
             ExitCode::from(2)
         }
     }

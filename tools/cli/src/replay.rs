@@ -10,7 +10,7 @@ use xt28_sim::effects::Overlay;
 
 use crate::files::{Form, no_input, replaceable, writable};
 use crate::ground::Ground;
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict};
 
 /// Feed the commands of a field log to our machine and compare what both did
@@ -81,7 +81,7 @@ impl Replay {
         }
         if let Some(path) = &self.plot {
             replay.draw(&log, path)?;
-            eprintln!("wrote {}", path.display());
+            tell!("wrote {}", path.display());
         }
         Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
     }
@@ -96,14 +96,14 @@ impl Replay {
             return Ok(About::terrain_of(path, &self.log)?);
         }
         if !beside.exists() {
-            eprintln!(
+            tell!(
                 "ASSUMED: {} was driven on level ground; say --terrain or --about if it was not",
                 self.log.display()
             );
             return Ok(Terrain::Flat);
         }
         if About::load(&beside)?.run_of(&self.log).is_none() {
-            eprintln!(
+            tell!(
                 "IGNORED: {} has no [[run]] for {}, which is taken as driven on level ground; name it there, or say \
                  --about or --terrain",
                 beside.display(),

@@ -13,7 +13,7 @@ use xt28_sim::Solver;
 
 use crate::artefacts::Artefacts;
 use crate::pace::Pace;
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict, processes};
 
 /// Run a scenario and say whether it holds
@@ -153,11 +153,11 @@ impl Run {
         let terms = Terms { patience: PATIENCE, waits_for_each: !self.realtime };
         let beside = bar.clone();
         let hearer = Box::new(move |at: SimTime, what: &str| {
-            beside.suspend(|| eprintln!("{:8.2} s  controller: {what}", at.as_secs_f64()));
+            beside.suspend(|| tell!("{:8.2} s  controller: {what}", at.as_secs_f64()));
         });
         let controller = Controller::open(setup, terms, hearer)?;
         if let Some(controller) = &controller {
-            eprintln!("a controller may connect to ws://{}", controller.address());
+            tell!("a controller may connect to ws://{}", controller.address());
         }
         Ok(controller)
     }

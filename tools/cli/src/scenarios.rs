@@ -8,7 +8,7 @@ use serde_json::json;
 use xt28_scenarios::{BUILTIN, Scenario, files_of};
 
 use crate::files::{refusal, write};
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict};
 
 /// List the built-in scenarios, or show one as a start for your own
@@ -37,7 +37,7 @@ impl Scenarios {
             }
             say!("{text}");
             for (file, _) in beside {
-                eprintln!("it needs {file} beside it; --out DIR writes both");
+                tell!("it needs {file} beside it; --out DIR writes both");
             }
             return Ok(Verdict::Positive);
         }

@@ -157,6 +157,39 @@ fn a_reader_that_goes_away_takes_no_verdict_with_it() {
     assert!(out.join("s.json").is_file() && out.join("s.svg").is_file());
 }
 
+#[cfg(target_os = "linux")]
+fn full() -> Stdio {
+    fs::OpenOptions::new().write(true).open("/dev/full").unwrap().into()
+}
+
+/// The exit status of a command whose talk goes to `talk`, which nobody reads.
+#[cfg(target_os = "linux")]
+fn unheard(arguments: &[&str], data: Stdio, talk: Stdio) -> Option<i32> {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_xt28"));
+    let mut child = command.args(arguments).stdout(data).stderr(talk).spawn().unwrap();
+    drop(child.stderr.take());
+    child.wait().unwrap().code()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn talk_that_cannot_be_written_takes_neither_files_nor_verdict_with_it() {
+    for talk in [full, Stdio::piped] {
+        let folder = folder_with(&[("s.toml", SCENARIO)]);
+        let [scenario, out, drive] = ["s.toml", "out", "d.toml"].map(|name| path(&folder, name));
+        let run = ["run", &scenario, "--out", &out];
+        assert_eq!(unheard(&run, Stdio::null(), talk()), Some(0));
+        let drive = ["gap", "drive", "straight", "--out", &drive];
+        assert_eq!(unheard(&drive, Stdio::null(), talk()), Some(0));
+        for name in ["out/s.log", "out/s.svg", "out/s.json", "d.toml", "d.script.toml"] {
+            assert!(folder.path().join(name).is_file(), "{name}");
+        }
+        assert_eq!(unheard(&["run", "no/such.toml"], Stdio::null(), talk()), Some(2));
+        // Data without room ends a program, with a word on it.
+        assert_eq!(unheard(&["config", "show"], full(), talk()), Some(2));
+    }
+}
+
 /// The headers of the sections that `xt28 config show` prints of a machine file, in order.
 fn sections(machine: &Path) -> (Vec<String>, String) {
     let output = xt28(&["config", "show", "--machine", machine.to_str().unwrap()]);

@@ -11,7 +11,7 @@ use xt28_gap_check::{
 };
 
 use crate::files::{Form, Outputs, write};
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict};
 
 /// Examine the diagnosis on machines whose faults are known, and print every score with its interval
@@ -73,7 +73,7 @@ impl Check {
             None => one_of_each(self.seed),
         };
         let examination = Examination::sealed(sources, self.seed)?;
-        eprintln!("answers sealed as {}", examination.seal());
+        tell!("answers sealed as {}", examination.seal());
         if let Some(seal) = &seal {
             write(seal, &format!("{}\n", examination.seal()))?;
         }
@@ -83,14 +83,14 @@ impl Check {
         let clock = || started.elapsed().as_secs_f64();
         let told = |examined: &Examined| {
             bar.inc(1);
-            bar.suspend(|| eprintln!("{}", line(examined)));
+            bar.suspend(|| tell!("{}", line(examined)));
         };
         let options = Options { how_far: !self.no_how_far, baselines: !self.no_baselines };
         let (examined, refused) = examination.examine(options, &clock, &told);
         bar.finish_and_clear();
         let mut judged = examination.open(examined)?;
         if !self.no_how_far {
-            eprintln!("fitting the true causes, for how far a gap can shrink at best");
+            tell!("fitting the true causes, for how far a gap can shrink at best");
             judged = examination.with_oracle(judged)?;
         }
         let all_read = refused.is_empty();
@@ -100,7 +100,7 @@ impl Check {
             .collect();
         let mut report = Report::new(&examination, judged).with_refused(refused);
         if self.sweep {
-            let told = |w: &Withheld| eprintln!("{}", withheld_line(w));
+            let told = |w: &Withheld| tell!("{}", withheld_line(w));
             report = report.with_sweep(sweep(&withheld, &told)?);
         }
         self.tell(&report)?;
@@ -136,7 +136,7 @@ impl Check {
         let json = || format!("{:#}\n", report.json());
         match &self.json {
             Some(None) => {
-                eprint!("{}", report.text());
+                tell!("{}", report.text().trim_end());
                 say!("{}", json());
             }
             Some(Some(file)) => {

@@ -19,7 +19,7 @@ use super::drive::{ensure_a_drives, script_beside, write_drive};
 use super::remarks::{Given, remarks};
 use crate::files::{Form, Outputs, write};
 use crate::ground::Ground;
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict};
 
 /// Say which unmodelled effect parts a machine from its simulator, with what probability
@@ -157,7 +157,7 @@ impl Diagnose {
         let (is_asked, terrain) = (self.about.is_some(), ground.as_ref().map(Ground::file));
         let known = Known { about: about.as_deref(), is_asked, terrain };
         let set = RunSet::load(&self.logs, &decoder, known, self.accept_cut)?;
-        bar.suspend(|| set.warnings().iter().for_each(|warning| eprintln!("{warning}")));
+        bar.suspend(|| set.warnings().iter().for_each(|warning| tell!("{warning}")));
         let choice = set.choose(&self.fit, &self.held)?;
         let (about, machine_file) = (about.as_deref(), self.machine.as_deref());
         let given = Given { decoder: &decoder, about, dbc: &self.dbc, machine: machine_file };

@@ -15,7 +15,7 @@ use xt28_sim::effects::Overlay;
 use super::about;
 use super::remarks::{Given, remarks};
 use crate::ground::Ground;
-use crate::say::say;
+use crate::say::{say, tell};
 use crate::{Failure, Verdict};
 
 /// Drive each block of the simulator with what was measured, and say which one parts from the log
@@ -86,13 +86,13 @@ impl Where {
             machine: machine_file,
         };
         for note in remarks(&set, &given)? {
-            eprintln!("{note}");
+            tell!("{note}");
         }
         let signals = |run: &KnownRun| Signals::new(&run.log, run.terrain.clone());
         let runs: Vec<Signals> = set.runs().iter().map(signals).collect::<Result<_, _>>()?;
         // First, as wheels in another order make an attitude that does not agree.
         if let Some(swap) = swapped_wheels(&runs, &machine) {
-            eprintln!("wheels look swapped: {swap}; nothing is put in order by itself");
+            tell!("wheels look swapped: {swap}; nothing is put in order by itself");
         }
         ensure_agreeing(&runs, &machine)?;
         let readings = set.runs().iter().map(|run| run.log.all_series());
@@ -103,7 +103,7 @@ impl Where {
             .collect();
         share_resistance(runs.iter_mut(), &machine);
         if let Some(remark) = Floors::remark(runs.iter().map(|run| &run.floors)) {
-            eprintln!("{remark}");
+            tell!("{remark}");
         }
         let evidence =
             Evidence::new(&runs, &machine, effects.effects(&machine)?, &Knob::tolerances());

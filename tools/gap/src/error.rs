@@ -297,15 +297,13 @@ pub enum GapError {
     /// The ground cannot be built.
     #[error(transparent)]
     Terrain(#[from] xt28_sim::TerrainError),
-    /// A log is packed by a program whose files are not read.
-    #[error(
-        "{path}: packed by {packer}; unpack it first, or pack it with gzip, which is read as it is"
-    )]
-    Packed {
+    /// A log is packed by a program, or written by a logger, whose files are not read.
+    #[error("{path}: {problem}")]
+    OtherForm {
         /// The file.
         path: PathBuf,
-        /// The program.
-        packer: &'static str,
+        /// What it is, and how to make a log of it.
+        problem: String,
     },
     /// Two files hold one log.
     #[error("{again}: the same log as {first}; give each log once, or it counts twice")]

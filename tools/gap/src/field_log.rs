@@ -78,9 +78,6 @@ impl FieldLog {
         let file = File::open(path).map_err(|source| GapError::read(path, source))?;
         let mut input = BufReader::new(file);
         let head = input.fill_buf().map_err(|source| GapError::read(path, source))?;
-        if let Some(packer) = packed::packer(head) {
-            return Err(GapError::Packed { path: path.to_owned(), packer });
-        }
         let name = path.display().to_string();
         if !head.starts_with(&gzip::MAGIC) {
             return Self::of_bytes(input, &name, decoder, accept_cut)?.finish(&name, decoder);
@@ -166,7 +163,10 @@ impl FieldLog {
     ) -> Result<Intake, GapError> {
         match input.fill_buf() {
             Ok(head) if head.starts_with(MAGIC) => Self::of_mcap(input, name, decoder, accept_cut),
-            Ok(_) => Self::of_candump(input, name, decoder, accept_cut),
+            Ok(head) => {
+                packed::ensure_readable(Path::new(name), head)?;
+                Self::of_candump(input, name, decoder, accept_cut)
+            }
             // It says so only once; what it means is for whoever reads the lines.
             Err(error) => {
                 let input = BufReader::new(Failed(Some(error)));

@@ -66,6 +66,23 @@ fn a_log_that_is_cut_says_how_to_take_what_is_there() {
 }
 
 #[test]
+fn a_log_of_another_logger_is_refused_with_the_way_to_turn_it_into_one() {
+    for head in
+        ["LOGG", "MDF     4.10", "date Mon", ";$FILEVERSION=1.1", "timestamp,arbitration_id"]
+    {
+        let form = format!("{head}\n{}", log());
+        for bytes in [form.clone().into_bytes(), zipped(form.as_bytes())] {
+            let error = load(&bytes, true).unwrap_err().to_string();
+            assert!(
+                error.contains("a.log: a") && error.contains("python -m can.logconvert "),
+                "{error}"
+            );
+            assert!(error.contains("a.log run.log` (of python-can"), "{error}");
+        }
+    }
+}
+
+#[test]
 fn a_mark_before_the_first_line_is_no_part_of_the_log() {
     let marked = read(&format!("\u{FEFF}{}", log())).unwrap();
     assert_eq!(marked.all_series(), read(&log()).unwrap().all_series());

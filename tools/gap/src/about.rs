@@ -13,7 +13,8 @@ use crate::toml_error::locate;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct About {
-    /// Name of the case.
+    /// Name of the case; empty where nobody gave one.
+    #[serde(default)]
     pub case: String,
     /// Day of the runs, as written: a date, or words.
     #[serde(default, deserialize_with = "day")]
@@ -214,6 +215,12 @@ ramp = { x_m = [4, 7, 8.5, 11.5], height_m = 0.3, y_min_m = -1.9, y_max_m = -0.5
         let lines =
             [(&about.run[0], "fit"), (&about.run[1], "terrain"), (&about.run[1], "seconds")];
         assert_eq!(lines.map(|(run, key)| about.line_of(run, key)), [7, 10, 9]);
+    }
+
+    #[test]
+    fn a_case_need_not_have_a_name() {
+        let about = parse(&ABOUT.replace("case = \"one\"", "")).unwrap();
+        assert_eq!((about.case.as_str(), about.run.len()), ("", 2));
     }
 
     #[test]

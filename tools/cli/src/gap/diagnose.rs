@@ -199,16 +199,15 @@ impl Diagnose {
 
     /// What the report is about.
     fn subject(&self) -> Result<Subject, Failure> {
-        let Some(path) = about(&self.logs, self.about.as_ref())? else {
-            let name = self.logs[0].file_name().unwrap_or_default();
-            return Ok(Subject { name: name.to_string_lossy().into_owned(), date: String::new() });
-        };
+        let name = self.logs[0].file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let unnamed = Subject { name, date: String::new() };
+        let Some(path) = about(&self.logs, self.about.as_ref())? else { return Ok(unnamed) };
         let about = About::load(&path)?;
         if self.logs.iter().all(|log| about.run_of(log).is_none()) {
-            let name = self.logs[0].file_name().unwrap_or_default().to_string_lossy();
-            return Ok(Subject { name: name.into_owned(), date: String::new() });
+            return Ok(unnamed);
         }
-        Ok(Subject { name: about.case, date: about.date.unwrap_or_default() })
+        let name = if about.case.is_empty() { unnamed.name } else { about.case };
+        Ok(Subject { name, date: about.date.unwrap_or_default() })
     }
 
     /// What the answer rests on.

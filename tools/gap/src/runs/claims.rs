@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::about::{About, Run};
-use crate::diagnosis::scripted_drive;
+use crate::diagnosis::{Manoeuvre, scripted_drive};
 use crate::{Channel, FieldLog, Series};
 
 /// A length is told in whole seconds, and loggers start and stop by hand: by how much it may be off, s ...
@@ -13,6 +13,8 @@ const OFF_S: f64 = 2.0;
 const OFF_SHARE: f64 = 0.1;
 /// Share of what a scripted drive moves a target by that is too little to be that drive.
 const MOVED_SHARE: f64 = 0.1;
+/// A drive over what only some have built: it has no script.
+const RAMP: &str = "ramp";
 
 /// One sentence for each claim of `run` in `about`, which was read from `file`, that the whole `log` denies.
 pub(super) fn denied(about: &About, file: &Path, run: &Run, log: &FieldLog) -> Vec<String> {
@@ -28,14 +30,28 @@ pub(super) fn denied(about: &About, file: &Path, run: &Run, log: &FieldLog) -> V
         )
     });
     let scenario = run.scenario.as_deref().and_then(|said| {
+        let said_at = format!("{}: scenario = \"{said}\"", at("scenario"));
+        if let Some(drives) = others(said) {
+            return Some(format!(
+                "{said_at} is none of {drives}, so {name} is not held against it, and it stands for no drive."
+            ));
+        }
         let target = not_moved(said, log)?;
         Some(format!(
-            "{}: scenario = \"{said}\", but {name} never moves the target of the {target} as that drive does; a \
-             drive that is said to be made is not asked for.",
-            at("scenario")
+            "{said_at}, but {name} never moves the target of the {target} as that drive does; a drive that is said \
+             to be made is not asked for."
         ))
     });
     seconds.into_iter().chain(scenario).collect()
+}
+
+/// All drives that are known by name, where `scenario` is the name of none.
+fn others(scenario: &str) -> Option<String> {
+    if scripted_drive(scenario).is_some() || scenario.eq_ignore_ascii_case(RAMP) {
+        return None;
+    }
+    let names = Manoeuvre::all().into_iter().map(|drive| drive.name);
+    Some(names.chain([RAMP]).collect::<Vec<_>>().join(", "))
 }
 
 /// What a drive may move, by its name and its channels.
@@ -101,8 +117,8 @@ mod tests {
     }
 
     #[test]
-    fn a_scripted_drive_that_was_not_driven_is_told_and_a_name_of_ones_own_is_not() {
-        for scenario in ["straight", "ramp", "hauling logs"] {
+    fn a_scripted_drive_that_was_not_driven_is_told_and_so_is_a_name_that_is_no_drives() {
+        for scenario in ["straight", "ramp"] {
             assert!(said(&format!("scenario = \"{scenario}\"")).is_empty(), "{scenario}");
         }
         for (scenario, target) in
@@ -114,5 +130,10 @@ mod tests {
             assert!(told.starts_with("about.toml:5: scenario = "), "{told}");
             assert!(told.contains(&format!("never moves the target of the {target}")), "{told}");
         }
+        let [told] = &said("scenario = \"hauling logs\"")[..] else {
+            panic!("a name of one's own")
+        };
+        let none = "about.toml:5: scenario = \"hauling logs\" is none of arm-step, single-arm, ";
+        assert!(told.starts_with(none), "{told}");
     }
 }

@@ -116,7 +116,7 @@ fn drives_are_listed_and_one_that_is_none_is_answered_with_those_there_are() {
 
 /// Records each of these on our own nominal machine and gives what a diagnosis of all their logs together
 /// says, with its exit code.
-fn diagnosed(scenarios: &[String], folder: &Path) -> (Option<i32>, String) {
+fn diagnosed(scenarios: &[String], folder: &Path, options: &[&str]) -> (Option<i32>, String) {
     let record = |(i, scenario): (usize, &String)| {
         let log = path(folder, &format!("run-{}.log", i + 1));
         let output = xt28(&["run", scenario, "--record", &log]);
@@ -124,7 +124,7 @@ fn diagnosed(scenarios: &[String], folder: &Path) -> (Option<i32>, String) {
         log
     };
     let logs: Vec<String> = scenarios.iter().enumerate().map(record).collect();
-    let mut words = vec!["gap", "diagnose", "--dbc", DBC, "--no-how-far"];
+    let mut words = [&["gap", "diagnose", "--dbc", DBC, "--no-how-far"], options].concat();
     words.extend(logs.iter().map(String::as_str));
     let output = xt28(&words);
     (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
@@ -139,8 +139,14 @@ fn the_test_drives_together_show_nothing() {
         scenario
     };
     let drives: Vec<String> = Manoeuvre::all().into_iter().map(drive).collect();
-    let (code, words) = diagnosed(&drives, folder.path());
+    let next = path(folder.path(), "next.toml");
+    xt28(&["gap", "drive", "straight", "--out", &next]);
+    let before = fs::read_to_string(&next).unwrap();
+    let (code, words) = diagnosed(&drives, folder.path(), &["--next", &next]);
     assert_eq!(code, Some(0), "{words}");
+    // No drive is left to ask for, and one of an earlier answer is not taken for it.
+    assert!(words.contains("next.script.toml there is older and was left as it was"), "{words}");
+    assert_eq!(fs::read_to_string(&next).unwrap(), before);
 }
 
 /// A bend that the attitude filter stops short in, brakes on arms that still level, arms at the ends of
@@ -149,7 +155,7 @@ fn the_test_drives_together_show_nothing() {
 fn what_no_other_drive_does_shows_nothing_either() {
     for scenario in ["straight-25m", "arm-steps", "s-turn"] {
         let folder = tempfile::tempdir().unwrap();
-        let (code, words) = diagnosed(&[scenario.to_owned()], folder.path());
+        let (code, words) = diagnosed(&[scenario.to_owned()], folder.path(), &[]);
         assert_eq!(code, Some(0), "{scenario}: {words}");
     }
 }

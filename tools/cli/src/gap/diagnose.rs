@@ -15,7 +15,7 @@ use xt28_sim::effects::Overlay;
 
 use super::about;
 use super::asked::{Answered, Asked, Input};
-use super::drive::{ensure_a_drives, script_beside, write_drive};
+use super::drive::{ensure_a_drives, not_written, script_beside, write_drive};
 use super::remarks::{Given, remarks};
 use crate::files::{Form, Outputs, write};
 use crate::ground::Ground;
@@ -178,8 +178,7 @@ impl Diagnose {
         let apart = next_drive(inquiry, diagnosis)?;
         let is_apart = apart.is_some();
         let Some((next, manoeuvre)) = apart.or_else(|| untested_drive(inquiry, diagnosis)) else {
-            let unwritten =
-                self.next.as_ref().map(|path| format!(" {} is not written.", path.display()));
+            let unwritten = self.next.as_ref().map(|path| format!(" {}.", not_written(path)));
             diagnosis.notes.push(format!(
                 "{NOTHING_APART}, and none would test more effects.{}",
                 unwritten.unwrap_or_default()

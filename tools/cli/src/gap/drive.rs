@@ -105,6 +105,18 @@ fn script_of(path: &Path) -> (PathBuf, String) {
     (script, name)
 }
 
+/// What is said where no drive is written into `path`: one that is there is none of this answer, and would run.
+pub(super) fn not_written(path: &Path) -> String {
+    let script = script_beside(path);
+    let older = [path, &script].into_iter().filter(|file| file.is_file());
+    let older: Vec<String> = older.map(|file| file.display().to_string()).collect();
+    let older = match older.join(" and ") {
+        none if none.is_empty() => none,
+        older => format!("; {older} there is older and was left as it was"),
+    };
+    format!("{} is not written{older}", path.display())
+}
+
 /// Writes `manoeuvre` into the file that an option names, and its script beside it.
 pub(super) fn write_drive(
     (path, option): (&Path, &str),
@@ -120,4 +132,24 @@ pub(super) fn write_drive(
     writable([script.as_path(), path])?;
     write(&script, &texts.1)?;
     write(path, &texts.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_older_drive_is_not_passed_over_in_silence_where_none_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let [path, script] = ["next.toml", "next.script.toml"].map(|name| folder.path().join(name));
+        let (name, beside) = (path.display(), script.display());
+        assert_eq!(not_written(&path), format!("{name} is not written"));
+        let straight = Manoeuvre::find("straight").unwrap();
+        write_drive((&path, "--next"), &straight, "tests nothing").unwrap();
+        let left = "there is older and was left as it was";
+        assert_eq!(
+            not_written(&path),
+            format!("{name} is not written; {name} and {beside} {left}")
+        );
+    }
 }

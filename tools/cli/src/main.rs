@@ -19,11 +19,12 @@ mod replay;
 mod run;
 mod say;
 mod scenarios;
+mod slips;
 
 use std::error::Error;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::say::tell;
 
@@ -60,7 +61,9 @@ enum Verdict {
 type Failure = Box<dyn Error>;
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let cli = Cli::try_parse();
+    let cli = cli.unwrap_or_else(|error| slips::with_meant(error, &Cli::command()).exit());
+    let outcome = match cli.command {
         None => run::Run::demo().execute(),
         Some(Command::Run(run)) => run.execute(),
         Some(Command::Replay(replay)) => replay.execute(),

@@ -7,7 +7,8 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_machine::SimTime;
 use xt28_scenarios::{
-    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, Setup, Terms,
+    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, ScenarioError, Setup,
+    Terms,
 };
 use xt28_sim::Solver;
 
@@ -79,7 +80,7 @@ impl Run {
     }
 
     pub(crate) fn execute(&self) -> Result<Verdict, Failure> {
-        let mut scenario = Scenario::find(&self.scenario)?;
+        let mut scenario = self.scenario()?;
         if let Some(machine) = &self.machine {
             scenario.machine = Some(machine.clone());
         }
@@ -111,6 +112,19 @@ impl Run {
         }
         artefacts.write(&setup, &recording, &report)?;
         Ok(if report.passed() { Verdict::Positive } else { Verdict::Negative })
+    }
+
+    /// The scenario that is named.
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        let name = &self.scenario;
+        match Scenario::find(name) {
+            // As a file that `xt28 scenarios ramp > mine` left.
+            Err(ScenarioError::Unknown { .. }) if Path::new(name).is_file() => {
+                let remedy = format!("write ./{name}, or name it {name}.toml");
+                Err(format!("no scenario `{name}`, but a file {name} is there; {remedy}").into())
+            }
+            found => Ok(found?),
+        }
     }
 
     fn lockstep(&self, setup: &Setup, artefacts: &Artefacts) -> Result<(Recording, Cost), Failure> {

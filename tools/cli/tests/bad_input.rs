@@ -34,6 +34,39 @@ fn an_unknown_scenario_is_answered_with_the_nearest() {
 }
 
 #[test]
+fn a_file_that_is_named_as_a_scenario_is_pointed_at() {
+    let folder = tempfile::tempdir().unwrap();
+    file(&folder, "mine", SCENARIO);
+    let run = |name: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_xt28"));
+        command.args(["run", name]).current_dir(folder.path()).output().unwrap()
+    };
+    let talk = String::from_utf8(run("mine").stderr).unwrap();
+    assert!(talk.contains("a file mine is there; write ./mine, or name it mine.toml"), "{talk}");
+    assert_eq!((talk.lines().count(), run("mine").status.code()), (1, Some(2)), "{talk}");
+    assert!(run("./mine").status.success());
+}
+
+#[test]
+fn a_command_of_another_level_is_answered_with_its_whole_name() {
+    for (asked, meant) in [
+        (&["diagnose", "a.log"][..], "xt28 gap diagnose"),
+        (&["where"], "xt28 gap where"),
+        (&["check"], "xt28 gap check"),
+        (&["drive", "mixed"], "xt28 gap drive"),
+        (&["show"], "xt28 config show"),
+        (&["gap", "replay"], "xt28 replay"),
+    ] {
+        let output = xt28(asked);
+        let talk = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{talk}");
+        assert!(talk.contains(&format!("did you mean {meant}?")), "{talk}");
+    }
+    let talk = String::from_utf8(xt28(&["dance"]).stderr).unwrap();
+    assert!(talk.contains("dance") && !talk.contains("did you mean"), "{talk}");
+}
+
+#[test]
 fn an_effect_that_the_ecus_of_a_scenario_do_not_hear_of_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[[effect]]\nname = \"steer-gain\"\nkp_factor = 0.5\n";

@@ -37,7 +37,7 @@ pub use observation::{Located, Observation};
 pub use peer::{EcuReport, PeerState};
 pub use policy::{Outcome, Pace, Policy};
 pub use pose::{Attitude, Pose};
-pub use remote::{Listen, Remote, Waited, Wanted};
+pub use remote::{Listen, Remote, Waited, Wanted, listen_advice};
 pub use status::{Status, Stops, Tally};
 pub use xt28_machine::SimTime;
 pub use xt28_safety::{Order, Phase, Reason};

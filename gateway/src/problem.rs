@@ -4,6 +4,7 @@ use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use gateway::listen_advice;
 use gateway::policy::SpecError;
 use xt28_bus::socket_can::{OpenError, SocketError};
 use xt28_machine::MachineError;
@@ -20,9 +21,7 @@ pub(crate) enum Problem {
     Machine(#[from] MachineError),
     #[error(transparent)]
     Policy(#[from] SpecError),
-    #[error(
-        "{address}: cannot listen for a controller: {source}; see --policy, is the port taken?"
-    )]
+    #[error("{address}: cannot listen for a controller: {source}; see --policy, {}", listen_advice(.source))]
     Listen { address: SocketAddr, source: io::Error },
     #[error(transparent)]
     Map(#[from] TerrainError),

@@ -88,6 +88,16 @@ pub struct Remote {
     complaints: Complaints,
 }
 
+/// What to look at where [`Remote::open`] failed.
+#[must_use]
+pub fn listen_advice(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::AddrNotAvailable => "this machine has no such address",
+        io::ErrorKind::PermissionDenied => "ports below 1024 are for the system alone",
+        _ => "is the port taken?",
+    }
+}
+
 /// What clients wanted beyond driving.
 #[derive(Debug, Default)]
 pub struct Wanted {

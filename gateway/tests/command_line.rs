@@ -55,6 +55,17 @@ fn a_machine_file_with_an_unknown_key() {
     assert!(error.contains(":2:") && error.contains("arm_lb"), "{error}");
 }
 
+/// That of a documentation's network is nobody's.
+#[test]
+fn an_address_of_another_machine_is_told_from_a_port_that_is_taken() {
+    let error = refusal(&["--bus", "can99", "--policy", "rosbridge:192.0.2.9:9090"]);
+    assert!(error.ends_with("see --policy, this machine has no such address\n"), "{error}");
+    let holder = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let policy = format!("rosbridge:{}", holder.local_addr().unwrap().port());
+    let error = refusal(&["--bus", "can99", "--policy", &policy]);
+    assert!(error.ends_with("see --policy, is the port taken?\n"), "{error}");
+}
+
 /// Who ran it goes by the status.
 #[cfg(target_os = "linux")]
 #[test]

@@ -1,16 +1,17 @@
 //! A client's socket, never waited for: bytes in, texts out, and what is not taken yet is kept.
 
-use std::io::{self, ErrorKind};
-use std::net::TcpStream;
+use std::io::{self, ErrorKind, Read};
+use std::net::{Shutdown, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::Duration;
 
 use rustix::net::sockopt;
-use tungstenite::error::ProtocolError;
+use tungstenite::error::{CapacityError, ProtocolError};
 use tungstenite::handshake::MidHandshake;
 use tungstenite::handshake::server::{ErrorResponse, Request, Response, ServerHandshake};
 use tungstenite::http::{StatusCode, header::ORIGIN};
-use tungstenite::protocol::WebSocketConfig;
+use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::{CloseFrame, WebSocketConfig};
 use tungstenite::{Error, HandshakeError, Message, WebSocket};
 
 use crate::rationed::{Ration, Rationed};
@@ -30,6 +31,11 @@ const PROBES: (Duration, u32) = (Duration::from_secs(1), 3);
 const UNACKNOWLEDGED_MS: u32 = 8_000;
 /// Most that waits to be sent, bytes: a client that is this far behind does not read any more.
 const WAITING_MAX: usize = 1 << 22;
+/// Longest reason that a goodbye has room for, bytes (RFC 6455, 5.5).
+const REASON_MAX: usize = 123;
+/// Most that is passed over of what a client said before it was let go, bytes: while any of it is unread the system
+/// takes a goodbye back.
+const UNREAD_MAX: usize = 1 << 16;
 
 type Screen = fn(&Request, Response) -> Result<Response, ErrorResponse>;
 
@@ -52,9 +58,16 @@ enum State {
     Gone,
 }
 
-/// A connection has ended, and this is why; nothing where the client wanted it so.
+/// A connection has ended, and this is why, in words and as the goodbye has it; nothing where the client wanted it so.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Ended(pub(crate) Option<String>);
+pub(crate) struct Ended(pub(crate) Option<(CloseCode, String)>);
+
+impl Ended {
+    /// It was ended here.
+    pub(crate) fn by_us(code: CloseCode, why: impl Into<String>) -> Self {
+        Self(Some((code, why.into())))
+    }
+}
 
 impl Connection {
     /// Takes up a stream that was accepted.
@@ -101,7 +114,12 @@ impl Connection {
                 // Some clients send their JSON as bytes.
                 Ok(Message::Binary(bytes)) => match std::str::from_utf8(&bytes) {
                     Ok(text) => hear(text),
-                    Err(_) => return Err(Ended(Some("sent bytes that are no text".to_owned()))),
+                    Err(_) => {
+                        return Err(Ended::by_us(
+                            CloseCode::Invalid,
+                            "sent bytes that are no text",
+                        ));
+                    }
                 },
                 Ok(_) => {}
                 Err(error) => {
@@ -134,10 +152,23 @@ impl Connection {
         Ok(())
     }
 
-    /// Says goodbye, if the client can still hear it.
-    pub(crate) fn close(mut self) {
-        if let State::Open(socket) = &mut self.state {
-            let _ = socket.close(None).and_then(|()| socket.flush());
+    /// Says goodbye, and why, if the client can still hear it.
+    pub(crate) fn close(mut self, Ended(why): &Ended) {
+        let State::Open(socket) = &mut self.state else { return };
+        let frame = why.as_ref().map(|(code, why)| {
+            let mut end = why.len().min(REASON_MAX);
+            while !why.is_char_boundary(end) {
+                end -= 1;
+            }
+            CloseFrame { code: *code, reason: why[..end].into() }
+        });
+        let _ = socket.close(frame).and_then(|()| socket.flush());
+        let _ = self.polled.shutdown(Shutdown::Write);
+        let (mut bytes, mut passed_over) = ([0; 4096], 0);
+        while passed_over < UNREAD_MAX
+            && let Ok(read @ 1..) = self.polled.read(&mut bytes)
+        {
+            passed_over += read;
         }
     }
 
@@ -152,7 +183,9 @@ impl Connection {
         self.state = match shaking.handshake() {
             Ok(socket) => State::Open(Box::new(socket)),
             Err(HandshakeError::Interrupted(shaking)) => State::Shaking(Box::new(shaking)),
-            Err(HandshakeError::Failure(error)) => return Err(Ended(Some(error.to_string()))),
+            Err(HandshakeError::Failure(error)) => {
+                return Err(Ended::by_us(CloseCode::Protocol, error.to_string()));
+            }
         };
         Ok(())
     }
@@ -197,8 +230,15 @@ fn settle(error: Error) -> Result<bool, Ended> {
         // Gone without a goodbye, as who is killed.
         Error::Protocol(ProtocolError::ResetWithoutClosingHandshake) => Err(Ended(None)),
         Error::Io(error) if error.kind() == ErrorKind::ConnectionReset => Err(Ended(None)),
-        Error::WriteBufferFull(_) => Err(Ended(Some("does not read what it asked for".to_owned()))),
-        error => Err(Ended(Some(error.to_string()))),
+        Error::WriteBufferFull(_) => {
+            Err(Ended::by_us(CloseCode::Policy, "does not read what it asked for"))
+        }
+        Error::Capacity(CapacityError::MessageTooLong { size, max_size }) => {
+            let why = format!("message of {size} bytes, {max_size} at most");
+            Err(Ended::by_us(CloseCode::Size, why))
+        }
+        error @ Error::Utf8(_) => Err(Ended::by_us(CloseCode::Invalid, error.to_string())),
+        error => Err(Ended::by_us(CloseCode::Protocol, error.to_string())),
     }
 }
 

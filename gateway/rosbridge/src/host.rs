@@ -10,6 +10,7 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
+use tungstenite::protocol::frame::coding::CloseCode;
 
 use crate::bridge::{Bridge, ClientId, Event};
 use crate::connection::{Connection, Ended};
@@ -69,7 +70,7 @@ impl Host {
             }
         }
         for (_, connection) in std::mem::take(&mut self.clients) {
-            connection.close();
+            connection.close(&Ended(None));
         }
     }
 
@@ -154,13 +155,13 @@ impl Host {
         }
     }
 
-    fn lose(&mut self, client: ClientId, Ended(why): Ended) {
+    fn lose(&mut self, client: ClientId, ended: Ended) {
         let left = self.bridge.disconnect(client);
         let was_open = self.clients.get(&client).is_some_and(Connection::is_open);
         if let Some(connection) = self.clients.remove(&client) {
-            connection.close();
+            connection.close(&ended);
         }
-        if let Some(why) = why {
+        if let Ended(Some((_, why))) = ended {
             self.events.push(Event::Complained { client: was_open.then_some(client), why });
         }
         if let Some(left) = left {
@@ -199,7 +200,8 @@ impl Host {
                     self.tell(format!("turned a client away: {CLIENTS_MAX} are connected already"));
                     continue;
                 };
-                self.lose(idle, Ended(Some("never finished its handshake".to_owned())));
+                let ended = Ended::by_us(CloseCode::Policy, "never finished its handshake");
+                self.lose(idle, ended);
             }
             if let Ok(connection) = Connection::begin(stream) {
                 let client = self.bridge.connect(address);

@@ -6,6 +6,7 @@ use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
+use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{ClientRequestBuilder, Message, WebSocket};
 use xt28_rosbridge::{Catalogue, Event, Server, Service, Taken, Topic};
@@ -188,6 +189,30 @@ fn a_client_that_does_not_read_is_let_go_and_the_others_hear_on() {
     }
     assert!(let_go);
     catch_up(&mut keen);
+}
+
+/// The longest that is taken is taken; of one that came in many pieces not all has been read when it is refused.
+#[test]
+fn one_whose_message_is_too_long_is_told_so_before_it_is_let_go() {
+    let server = server();
+    let mut client = connect(&server);
+    let call = |text: String| json!({ "op": "call_service", "id": "up", "service": "/rosapi/get_time", "args": text });
+    let spare = 4096 - call(String::new()).to_string().len();
+    say(&mut client, &call("x".repeat(spare)));
+    assert_eq!(hear(&mut client)["id"], "up");
+    for size in [4097, 5127, 20_000] {
+        let mut client = connect(&server);
+        client.send(Message::text("x".repeat(size))).unwrap();
+        let Ok(Message::Close(Some(goodbye))) = client.read() else { panic!("no goodbye") };
+        let told = format!("message of {size} bytes, 4096 at most");
+        assert_eq!((goodbye.code, goodbye.reason.as_str()), (CloseCode::Size, told.as_str()));
+        let Some(Event::Complained { why, .. }) = server.event(PATIENCE) else { panic!("no word") };
+        assert_eq!(why, told);
+    }
+    let mut client = connect(&server);
+    client.send(Message::binary(vec![0xFF; 9])).unwrap();
+    let Ok(Message::Close(Some(goodbye))) = client.read() else { panic!("no goodbye") };
+    assert_eq!(goodbye.code, CloseCode::Invalid);
 }
 
 /// Frames without bytes, none of them the last of its message.

@@ -173,6 +173,17 @@ fn a_bus_that_does_not_exist_is_refused_before_anything_starts() {
     assert!(talk.contains("nocan7"), "{talk}");
 }
 
+/// That of a documentation's network is nobody's.
+#[test]
+fn an_address_of_another_machine_is_told_from_a_port_that_is_taken() {
+    let run = |policy: &str| refusal(&["run", "straight-25m", "--policy", policy]);
+    let talk = run("rosbridge:192.0.2.9:9090");
+    assert!(talk.contains("this machine has no such address") && !talk.contains("taken"), "{talk}");
+    let holder = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let talk = run(&format!("rosbridge:{}", holder.local_addr().unwrap().port()));
+    assert!(talk.contains("is the port taken?"), "{talk}");
+}
+
 #[test]
 fn a_folder_that_cannot_be_made_is_refused() {
     let folder = tempfile::tempdir().unwrap();

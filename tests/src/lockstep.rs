@@ -63,7 +63,7 @@ pub enum RunError {
     #[error(transparent)]
     Effects(#[from] OverlayError),
     /// A controller elsewhere cannot be listened for.
-    #[error("{address}: cannot listen for a controller: {source}; is the port taken?")]
+    #[error("{address}: cannot listen for a controller: {source}; {}", gateway::listen_advice(.source))]
     Listen {
         /// Where.
         address: SocketAddr,

@@ -1,6 +1,5 @@
 //! `xt28 run`: one scenario, on the virtual bus in lockstep or as programs on a real one.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -8,8 +7,8 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use xt28_machine::SimTime;
 use xt28_scenarios::{
-    Controller, Cost, Lockstep, Recording, Report, RunError, STEPS_PER_TICK, Scenario,
-    ScenarioError, Setup, Terms,
+    Controller, Cost, Lockstep, Recording, Report, STEPS_PER_TICK, Scenario, ScenarioError, Setup,
+    Terms,
 };
 use xt28_sim::Solver;
 
@@ -170,16 +169,7 @@ impl Run {
         let hearer = Box::new(move |at: SimTime, what: &str| {
             beside.suspend(|| tell!("{:8.2} s  controller: {what}", at.as_secs_f64()));
         });
-        let controller = Controller::open(setup, terms, hearer).map_err(|error| match error {
-            RunError::Listen { address, source } if source.kind() == ErrorKind::AddrNotAvailable => {
-                format!(
-                    "{address}: cannot listen for a controller: {source}; this machine has no such address, give \
-                     --policy rosbridge:PORT or one that it has"
-                )
-                .into()
-            }
-            error => Failure::from(error),
-        })?;
+        let controller = Controller::open(setup, terms, hearer)?;
         if let Some(controller) = &controller {
             tell!("a controller may connect to ws://{}", controller.address());
         }

@@ -72,30 +72,29 @@ pub(super) fn ensure_free(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Refuses to replace what is at `path`, which `option` names, with anything else: a drive is made again in a moment,
-/// and what somebody wrote or changed is not.
-fn ensure_same(path: &Path, option: &str, is_same: impl Fn(&str) -> bool) -> Result<(), Failure> {
+/// Refuses to replace what is at `path`, which `option` names, unless it is as a drive is written: that is made again
+/// in a moment, and what somebody wrote or changed is not.
+fn ensure_ours(path: &Path, option: &str, is_ours: impl Fn(&str) -> bool) -> Result<(), Failure> {
     // What is no file keeps nothing, and a file without a word has nothing to keep.
-    if path.is_file() && is_other(path, |text| text.trim().is_empty() || is_same(text)) {
-        let problem = "it is there already and is not what would be written";
+    if path.is_file() && is_other(path, |text| text.trim().is_empty() || is_ours(text)) {
+        let problem = "it is there already and is no test drive as it was written";
         return Err(format!("{}: {problem}; give {option} another", path.display()).into());
     }
     Ok(())
 }
 
-/// Refuses what is at `path`, or where its script goes, and is no drive as it was written: before anybody knows
-/// which drive it will be.
+/// Refuses what is at `path`, or where its script goes, and is no drive as it was written, whichever.
 pub(super) fn ensure_a_drives(path: &Path, option: &str) -> Result<(), Failure> {
     ensure_free(path)?;
     let (script, name) = script_of(path);
     let all = Manoeuvre::all();
     // Its first line says what a drive is good for, which is told of each diagnosis anew.
     let body = |text: &str| text.split_once('\n').map(|(_, body)| body.to_owned());
-    ensure_same(path, option, |text| {
+    ensure_ours(path, option, |text| {
         let is_of = |one: &Manoeuvre| body(text) == body(&one.scenario(&name, ""));
         Manoeuvre::is_scenario(text) && all.iter().any(is_of)
     })?;
-    ensure_same(&script, option, |text| all.iter().any(|one| one.script() == text))
+    ensure_ours(&script, option, |text| all.iter().any(|one| one.script() == text))
 }
 
 /// Where the script of a scenario at `path` goes, and how the scenario names it.
@@ -123,11 +122,9 @@ pub(super) fn write_drive(
     manoeuvre: &Manoeuvre,
     good_for: &str,
 ) -> Result<(), Failure> {
-    ensure_free(path)?;
+    ensure_a_drives(path, option)?;
     let (script, name) = script_of(path);
     let texts = (manoeuvre.scenario(&name, good_for), manoeuvre.script());
-    ensure_same(path, option, |text| text == texts.0)?;
-    ensure_same(&script, option, |text| text == texts.1)?;
     // Half a drive is none.
     writable([script.as_path(), path])?;
     write(&script, &texts.1)?;

@@ -7,6 +7,7 @@ mod args;
 mod listening;
 mod realtime;
 mod schedule;
+mod sending;
 mod serial;
 mod watch;
 mod wire_buses;

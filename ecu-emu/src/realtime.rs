@@ -11,7 +11,6 @@ use ecu_emu::{
     Emulator, EmulatorConfig, Mishaps, Operator, Profile, TICK, TRUTH_HEADER, UnheardEffect, Wire,
     write_truth_row,
 };
-use xt28_bus::socket_can::SocketError;
 use xt28_bus::{Bus, BusState, SocketCan};
 use xt28_dbc::Outbox;
 use xt28_machine::{Machine, PerWheel, SimTime};
@@ -21,6 +20,7 @@ use xt28_sim::effects::Overlay;
 use crate::args::Args;
 use crate::listening;
 use crate::schedule::{STALE, Schedule};
+use crate::sending::send;
 use crate::serial::Serial;
 use crate::tell;
 use crate::watch::Watch;
@@ -72,7 +72,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         }
         wires.listen(now, &mut emulator)?;
         emulator.tick(now, &mut out);
-        send(&mut bus, now, &out, &mut watch)?;
+        if !send(&mut bus, now, out.frames())? {
+            watch.note_full();
+        }
         wires.send(now, &emulator)?;
         bytes.clear();
         emulator.take_gnss(&mut bytes);
@@ -87,26 +89,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
     tell(schedule);
     if let frames @ 1.. = u64::from(bus.receive_drops().unwrap_or(0)) + wires.receive_drops() {
         tell(format_args!("{frames} frames came and were lost: nobody read them in time"));
-    }
-    Ok(())
-}
-
-/// Gives the frames of a tick to the interface. One that takes none, as where nobody is there to acknowledge them
-/// yet, loses them: the machine goes on, as its ECUs would.
-fn send(
-    bus: &mut SocketCan,
-    now: SimTime,
-    out: &Outbox,
-    watch: &mut Watch,
-) -> Result<(), SocketError> {
-    for frame in out.frames() {
-        match bus.send(now, frame) {
-            Err(SocketError::BacklogFull { .. }) => {
-                bus.discard_backlog();
-                watch.note_full();
-            }
-            sent => sent?,
-        }
     }
     Ok(())
 }

@@ -4,6 +4,8 @@
 use xt28_dbc::messages::{PosFront, WheelSpeedJoint};
 use xt28_dbc::{CanId, Frame};
 
+use crate::sending::no_frame_leaves;
+
 /// Sent every tick by either profile's arm ECU and drive ECU, and by nobody else.
 const ONLY_OURS: [(CanId, &str); 2] =
     [(PosFront::ID, "PosFront"), (WheelSpeedJoint::ID, "WheelSpeedJoint")];
@@ -56,12 +58,7 @@ impl Watch {
                      `ip -details -statistics link show {name}`"
                 )
             }),
-            filled.then(|| {
-                format!(
-                    "{name}: no frame leaves, and those that wait are thrown away until one does; is another node on \
-                     the bus, at the same bit rate?"
-                )
-            }),
+            filled.then(|| no_frame_leaves(name)),
         ]
     }
 }

@@ -5,18 +5,23 @@ use xt28_bus::{Bus, SocketCan};
 use xt28_machine::SimTime;
 
 use crate::listening::{AT_ONCE, discard};
+use crate::sending::{no_frame_leaves, send};
+use crate::tell;
 
 type Problem = Box<dyn std::error::Error>;
 
 /// Wires that have an interface.
 pub(crate) struct WireBuses {
     buses: Vec<(Wire, SocketCan)>,
+    /// Each interface's name, and whether it was told that none of its frames leaves.
+    stuck: Vec<(String, bool)>,
 }
 
 impl WireBuses {
     pub(crate) fn open(named: &[(Wire, String)]) -> Result<Self, Problem> {
         let open = |(wire, interface): &(Wire, String)| Ok((*wire, SocketCan::open(interface)?));
-        Ok(Self { buses: named.iter().map(open).collect::<Result<_, Problem>>()? })
+        let stuck = named.iter().map(|(_, interface)| (interface.clone(), false)).collect();
+        Ok(Self { buses: named.iter().map(open).collect::<Result<_, Problem>>()?, stuck })
     }
 
     /// Takes what others sent since the last tick. An ECU reads its boxes once a tick anyway.
@@ -38,11 +43,11 @@ impl WireBuses {
         Ok(())
     }
 
-    /// Sends what the machine put on its wires in this tick.
+    /// Sends what the machine put on its wires in this tick. One that takes nothing loses it, which is told once.
     pub(crate) fn send(&mut self, now: SimTime, emulator: &Emulator) -> Result<(), Problem> {
-        for (wire, bus) in &mut self.buses {
-            for frame in emulator.on_wire(*wire) {
-                bus.send(now, frame)?;
+        for ((wire, bus), (interface, told)) in self.buses.iter_mut().zip(&mut self.stuck) {
+            if !send(bus, now, emulator.on_wire(*wire))? && !std::mem::replace(told, true) {
+                tell(no_frame_leaves(interface));
             }
         }
         Ok(())

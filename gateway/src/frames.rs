@@ -11,7 +11,7 @@ use xt28_dbc::{EncodeError, Outbox};
 use xt28_safety::{Arms, Command};
 use xt28_ubx::Enu;
 
-use crate::epoch::{Fix, Quality};
+use crate::epoch::{Epoch, Fix, Quality};
 
 /// On the wire, this target holds the arm: raw 255 at 2 mm a bit.
 const HOLD_MM: f64 = 510.0;
@@ -177,6 +177,23 @@ pub(crate) fn quality(
 /// Accuracy without a fix is kilometres; the field says 65.535 m at most.
 fn saturated(value: f64) -> f64 {
     value.clamp(0.0, 65_535.0)
+}
+
+/// A fix in the log: its position where there is one, its velocity where there is a heading too (they
+/// share a frame), its quality always, also where one of the others has no form on the wire.
+pub(crate) fn fix(
+    epoch: &Epoch,
+    antenna: Enu,
+    latency_s: f64,
+    out: &mut Outbox,
+) -> [Result<(), EncodeError>; 3] {
+    let there = epoch.quality.fix > Fix::None;
+    let heading_rad = epoch.heading_rad.filter(|_| there);
+    [
+        if there { position(antenna, out) } else { Ok(()) },
+        heading_rad.map_or(Ok(()), |rad| velocity(epoch.velocity_m_s, rad, out)),
+        quality(&epoch.quality, latency_s, out),
+    ]
 }
 
 #[cfg(test)]

@@ -4,12 +4,12 @@ use xt28_dbc::messages::{ArmStatus, ArmTarget, ArmValve, DriveStatus, DriveTarge
 use xt28_dbc::{EncodeError, Frame, Outbox};
 use xt28_machine::{Machine, PerWheel, SimTime};
 use xt28_safety::{Command, Input, Measured, Order, Phase, Stamps, State, Verdict, step};
-use xt28_ubx::{Enu, LocalFrame};
+use xt28_ubx::LocalFrame;
 
-use crate::epoch::{Epoch, EpochCollector, Fix, Quality};
+use crate::epoch::{Epoch, EpochCollector, Quality};
 use crate::frames::{self, Drive, FrameWriter};
 use crate::peer::Peer;
-use crate::policy::Answer;
+use crate::policy::{Answer, held};
 use crate::sensors::Sensors;
 use crate::status::{Status, Stops, Tally};
 use crate::trust::{trusted, trusts_loads, turning_rad_s};
@@ -37,7 +37,8 @@ pub struct Gateway {
     fresh: Option<(SimTime, Epoch)>,
     located: Option<Located>,
     quality: Option<Quality>,
-    request: Option<Command>,
+    /// What the policy wants, and the arming that it saw as it wanted it.
+    request: Option<(Command, Option<SimTime>)>,
     stamps: Stamps,
     kernel: State,
     order: Order,
@@ -153,7 +154,9 @@ impl Gateway {
         if let Some((at, epoch)) = fresh {
             let antenna = self.frame.to_local(epoch.position);
             let latency_s = now.since(at).as_secs_f64();
-            record(&epoch, antenna, latency_s, out).into_iter().for_each(|sent| self.note(sent));
+            frames::fix(&epoch, antenna, latency_s, out)
+                .into_iter()
+                .for_each(|sent| self.note(sent));
         }
     }
 
@@ -223,7 +226,9 @@ impl Gateway {
     /// Takes an answer that has come in, and asks the policy, if it is its time.
     fn ask(&mut self, now: SimTime, located: Option<Located>) {
         if let Some(Answer { command, sensed_at }) = self.policy.answer() {
-            self.request = Some(command);
+            // One from before this arming, however late it comes, was of another machine.
+            let armed_at = self.armed_now().filter(|armed_at| sensed_at >= *armed_at);
+            self.request = Some((command, armed_at));
             // Not when it came: a controller that falls behind is as good as silent.
             self.stamps.policy_ns = Some(sensed_at.as_nanos());
         }
@@ -236,7 +241,7 @@ impl Gateway {
         let seen = self.observe(now, sensed_at);
         self.stamps.observation_ns = Some(sensed_at.as_nanos());
         if let Some(command) = self.policy.act(&seen) {
-            self.request = Some(command);
+            self.request = Some((command, self.armed_now()));
             self.stamps.policy_ns = Some(now.as_nanos());
         }
     }
@@ -244,10 +249,10 @@ impl Gateway {
     fn observe(&mut self, now: SimTime, sensed_at: SimTime) -> Observation {
         let means = self.sensors.take_means();
         let previous_action = match &self.request {
-            Some(request) => self.map.action(request, &means.stroke_m),
+            Some((wanted, _)) => self.map.action(wanted, &means.stroke_m),
             None => Action::default(),
         };
-        let armed_at = self.armed_at.filter(|_| self.kernel.is_armed());
+        let armed_at = self.armed_now();
         let lost = self.config.limits.observation;
         Observation {
             at: now,
@@ -265,6 +270,21 @@ impl Gateway {
             rear_joint_rad: means.rear_joint_rad,
             previous_action,
         }
+    }
+
+    /// When the kernel was armed, while it is.
+    fn armed_now(&self) -> Option<SimTime> {
+        self.armed_at.filter(|_| self.kernel.is_armed())
+    }
+
+    /// What the policy wants, given what it has seen since the kernel was armed; before that, nothing but its brake.
+    fn requested(&self) -> Option<Command> {
+        let (command, seen_armed) = self.request?;
+        let joint_rad = self.measured().front_angle_rad;
+        let moves = seen_armed.is_some() && seen_armed == self.armed_now();
+        // What is not finite the kernel has to see.
+        let as_it_is = moves || !command.is_finite() || !joint_rad.is_finite();
+        Some(if as_it_is { command } else { held(joint_rad, command.brake) })
     }
 
     /// The brake is on, or is told to be.
@@ -291,7 +311,7 @@ impl Gateway {
         let sent = self.writer.sent();
         Input {
             order,
-            request: self.request,
+            request: self.requested(),
             measured: self.measured(),
             is_braked: self.is_braked(),
             arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
@@ -370,23 +390,6 @@ const fn precedence(order: Order) -> u8 {
         Order::Disarm => 3,
         Order::EmergencyStop => 4,
     }
-}
-
-/// A fix in the log: its position where there is one, its velocity where there is a heading too (they
-/// share a frame), its quality always, also where one of the others has no form on the wire.
-fn record(
-    epoch: &Epoch,
-    antenna: Enu,
-    latency_s: f64,
-    out: &mut Outbox,
-) -> [Result<(), EncodeError>; 3] {
-    let there = epoch.quality.fix > Fix::None;
-    let heading_rad = epoch.heading_rad.filter(|_| there);
-    [
-        if there { frames::position(antenna, out) } else { Ok(()) },
-        heading_rad.map_or(Ok(()), |rad| frames::velocity(epoch.velocity_m_s, rad, out)),
-        frames::quality(&epoch.quality, latency_s, out),
-    ]
 }
 
 impl core::fmt::Debug for Gateway {

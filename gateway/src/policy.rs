@@ -40,9 +40,8 @@ pub trait Policy: Send {
     }
 
     /// What it wants, given what it sees. Also asked while not armed
-    /// (`since_arming_s` is `None`), so that its first armed answer is not its first; what it wants then is in
-    /// force from the tick that arms to its next answer, so it wants nothing moved. `None` from one that thinks
-    /// elsewhere: [`Self::answer`] has it once it is there.
+    /// (`since_arming_s` is `None`), so that its first armed answer is not its first; of what it wants then the
+    /// brake alone counts. `None` from one that thinks elsewhere: [`Self::answer`] has it once it is there.
     fn act(&mut self, observation: &Observation) -> Option<Command>;
 
     /// What it wants of its own accord, once: the answer to an observation that it was shown before.
@@ -55,7 +54,7 @@ pub trait Policy: Send {
 }
 
 /// What moves nothing: throttle at zero, the joint at `front_angle_rad`, every arm held where it is.
-const fn held(front_angle_rad: f64, brake: bool) -> Command {
+pub(crate) const fn held(front_angle_rad: f64, brake: bool) -> Command {
     Command { throttle: 0.0, front_angle_rad, arms: Arms::Position([None; 6]), brake }
 }
 

@@ -81,11 +81,21 @@ impl Held {
     }
 }
 
-/// A counter that was on the bus, and when.
+/// A counter that was on the bus, and how the row that it is of keeps its time.
 #[derive(Clone, Copy, Debug)]
 struct Counted {
     at_s: f64,
     counter: u64,
+    /// Steps since the row began.
+    steps: u64,
+    /// When the row began by the frame of it that came earliest for its step, s.
+    begun_s: f64,
+}
+
+impl Counted {
+    const fn first(at_s: f64, counter: u64) -> Self {
+        Self { at_s, counter, steps: 0, begun_s: at_s }
+    }
 }
 
 /// Checks frames in bus order.
@@ -97,8 +107,11 @@ pub(crate) struct FrameCheck {
 
 /// Counters go round in so many steps.
 const ROUND: u64 = 16;
-/// A counter that seems to have gone more than half its round has gone back.
-const STEP_MAX: u64 = ROUND / 2 - 1;
+/// After so many periods of silence a sender may have begun anew.
+const SILENCE_PERIODS: f64 = 7.0;
+/// A step comes no more periods before its time by the earliest so far. One that goes back seems to come most of a
+/// round too early.
+const EARLY_PERIODS: f64 = 1.5;
 
 impl FrameCheck {
     /// Takes in a frame that ended at `at_s`; one that is not of our database is never wrong.
@@ -111,8 +124,8 @@ impl FrameCheck {
         self.count(at_s, &held.message, frame.data())
     }
 
-    /// A counter goes one up with each frame. Frames may be missing from a log, so it may go up by more where there
-    /// was time for as many; and a sender that fell silent may have begun anew.
+    /// A counter goes one up with each frame. Frames may be missing from a log and others come late, several at once, so
+    /// that it may go up by more, but none is ahead of its row's time; and a sender that fell silent may have begun anew.
     fn count(
         &mut self,
         at_s: f64,
@@ -123,25 +136,23 @@ impl FrameCheck {
             return Ok(());
         };
         let counter = signal.field.raw(data);
-        let Some(before) = self.alive.insert(message.id, Counted { at_s, counter }) else {
-            return Ok(());
-        };
+        let anew = Counted::first(at_s, counter);
+        let Some(before) = self.alive.insert(message.id, anew) else { return Ok(()) };
         let period_s = f64::from(message.period_ms) * 1e-3;
         let after_s = at_s - before.at_s;
-        if after_s > period_s * f64::from(SILENCE_PERIODS) {
+        if after_s > SILENCE_PERIODS * period_s {
             return Ok(());
         }
         let step = (counter + ROUND - before.counter) % ROUND;
-        // Half a period of play for each: a busy machine is late.
-        #[allow(clippy::cast_precision_loss)] // at most 16
-        let needs_s = 0.5 * period_s * step.saturating_sub(1) as f64;
-        if (1..=STEP_MAX).contains(&step) && after_s >= needs_s {
+        let steps = before.steps + step;
+        #[allow(clippy::cast_precision_loss)] // a run has some thousands
+        let begun_s = at_s - steps as f64 * period_s;
+        if step > 0 && begun_s > before.begun_s - EARLY_PERIODS * period_s {
+            let begun_s = begun_s.min(before.begun_s);
+            self.alive.insert(message.id, Counted { at_s, counter, steps, begun_s });
             return Ok(());
         }
         let (message, before, after_ms) = (message.name.as_str(), before.counter, after_s * 1e3);
         Err(FrameProblem::Alive { message, counter, before, after_ms })
     }
 }
-
-/// After so many periods of silence a sender may have begun anew.
-const SILENCE_PERIODS: u32 = 7;

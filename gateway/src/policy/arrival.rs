@@ -44,8 +44,8 @@ pub(super) fn too_far(pose: &Pose, goal: &Pose) -> Option<Outcome> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Standstill {
     since: Option<SimTime>,
-    /// When it was looked at first.
-    begun: Option<SimTime>,
+    /// Since when it rolls on.
+    rolls_since: Option<SimTime>,
 }
 
 impl Standstill {
@@ -56,12 +56,14 @@ impl Standstill {
         pose: &Pose,
         goal: &Pose,
     ) -> Option<Outcome> {
-        let begun = *self.begun.get_or_insert(seen.at);
         if self.has_stood(seen) {
             return Some(judge(pose, goal));
         }
         let speed_m_s = seen.wheel_speed_m_s;
-        (seen.at.since(begun).as_secs_f64() >= STOPPING_MAX_S).then(|| {
+        let rolls = speed_m_s.abs() >= STANDING_M_S && seen.since_arming_s.is_some();
+        let since = self.rolls_since.filter(|_| rolls).unwrap_or(seen.at);
+        self.rolls_since = rolls.then_some(since);
+        (seen.at.since(since).as_secs_f64() >= STOPPING_MAX_S).then(|| {
             Outcome::Failed(format!(
                 "{STOPPING_MAX_S} s after the throttle was let go the wheels still read {speed_m_s:.2} m/s; does a \
                  sensor of theirs hang?"

@@ -88,23 +88,13 @@ struct Desk {
     account: Account,
     /// The newest one, until the controller takes it.
     fresh: Option<Seen>,
-    /// The last ones, the newest last.
-    lately: VecDeque<Shown>,
+    /// When the last ones were put together and sensed, the newest last.
+    lately: VecDeque<(SimTime, SimTime)>,
     /// The one answered last.
     answered: u64,
     /// The newest answer, until the gateway takes it.
-    answer: Option<(Action, Shown)>,
+    answer: Option<(Action, SimTime)>,
     outcome: Outcome,
-}
-
-/// What of an observation its answer is taken by.
-#[derive(Clone, Copy, Debug)]
-struct Shown {
-    /// When it was put together.
-    at: SimTime,
-    sensed_at: SimTime,
-    /// Where the front joint stood, rad, if nothing was to move yet: whoever answers then asks for nothing.
-    unarmed_rad: Option<f64>,
 }
 
 impl Desk {
@@ -148,22 +138,13 @@ impl Policy for External {
         if desk.lately.len() == ANSWERABLE {
             desk.lately.pop_front();
         }
-        let joint_rad = observation.front_joint_rad;
-        desk.lately.push_back(Shown {
-            at: observation.at,
-            sensed_at: observation.sensed_at,
-            unarmed_rad: observation.since_arming_s.is_none().then_some(joint_rad),
-        });
+        desk.lately.push_back((observation.at, observation.sensed_at));
         None
     }
 
     fn answer(&mut self) -> Option<Answer> {
-        let (action, shown) = lock(&self.desk).answer.take()?;
-        let command = match shown.unarmed_rad {
-            Some(joint_rad) => held(joint_rad, false),
-            None => self.map.command(&action),
-        };
-        Some(Answer { command, sensed_at: shown.sensed_at })
+        let (action, sensed_at) = lock(&self.desk).answer.take()?;
+        Some(Answer { command: self.map.command(&action), sensed_at })
     }
 
     fn outcome(&self) -> Outcome {
@@ -198,18 +179,18 @@ impl Seat {
             return Err(Refusal::NotShown { seq, newest });
         }
         let back = usize::try_from(newest - seq).unwrap_or(usize::MAX);
-        let Some(&shown) = desk.lately.iter().rev().nth(back) else {
+        let Some(&(at, sensed_at)) = desk.lately.iter().rev().nth(back) else {
             return Err(Refusal::TooOld { seq, newest });
         };
         if seq <= answered {
             return Err(Refusal::Overtaken { seq, answered });
         }
-        let delay = now.since(shown.at);
+        let delay = now.since(at);
         desk.account.answers += 1;
         desk.account.delay_sum += delay;
         desk.account.delay_max = desk.account.delay_max.max(delay);
         desk.answered = seq;
-        desk.answer = Some((action, shown));
+        desk.answer = Some((action, sensed_at));
         Ok(())
     }
 
@@ -295,18 +276,6 @@ mod tests {
         assert_eq!((account.shown, account.answers), (2, 2));
         assert_eq!(account.delay_max, Duration::from_millis(1875));
         assert_eq!(account.delay_sum, Duration::from_millis(1875 + 1750));
-    }
-
-    #[test]
-    fn an_answer_from_before_arming_moves_nothing_whenever_it_comes() {
-        let (mut policy, seat) = External::new(&Machine::xt28(), Pace::Fix);
-        policy.act(&Observation { since_arming_s: None, ..seen(125) });
-        policy.act(&seen(250));
-        for (seq, moves) in [(1, false), (2, true)] {
-            seat.answer(SimTime::from_millis(300), seq, Action([1.0; 8])).unwrap();
-            let command = policy.answer().unwrap().command;
-            assert_eq!(command == held(0.3, false), !moves, "{command:?}");
-        }
     }
 
     #[test]

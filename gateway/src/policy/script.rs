@@ -64,7 +64,7 @@ impl Script {
         ScriptFile::parse(text, path, limits).map(Self::new)
     }
 
-    /// The same for a run of `run_s` s, within which each command has to come.
+    /// The same for a run of `run_s` s, armed within it, in which each command has to come.
     ///
     /// # Errors
     /// [`ScriptError::Parse`].
@@ -75,7 +75,7 @@ impl Script {
         limits: &Limits,
     ) -> Result<Self, ScriptError> {
         let file = ScriptFile::parse(text, path, limits)?;
-        file.check_run(run_s, text, path)?;
+        file.check_run(run_s, limits, text, path)?;
         Ok(Self::new(file))
     }
 
@@ -233,7 +233,7 @@ opening_percent = [10, -10, 0, 0, 30, -30]
         let parse = |run_s| Script::parse_for(run_s, TEXT, Path::new("s.toml"), &Limits::XT28);
         assert!(parse(100.0).is_ok());
         let error = parse(2.0).unwrap_err().to_string();
-        assert!(error.starts_with("s.toml:6: at_s = 2 lies outside the run, 0 to 2"), "{error}");
+        assert!(error.starts_with("s.toml:6: at_s = 2 lies outside the run of 2 s"), "{error}");
     }
 
     #[test]

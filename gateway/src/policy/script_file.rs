@@ -113,12 +113,21 @@ impl ScriptFile {
 }
 
 impl ScriptFile {
-    /// Refuses a command that would never be played in a run of `run_s` s.
-    pub(super) fn check_run(&self, run_s: f64, text: &str, path: &Path) -> Result<(), ScriptError> {
-        let late = self.commands.iter().find(|entry| *entry.at_s.get_ref() >= run_s);
+    /// Refuses a command that would never be played in a run of `run_s` s, of which arming takes a while.
+    #[allow(clippy::cast_precision_loss)] // a fraction of a second
+    pub(super) fn check_run(
+        &self,
+        run_s: f64,
+        limits: &Limits,
+        text: &str,
+        path: &Path,
+    ) -> Result<(), ScriptError> {
+        let arms_s = limits.steady_ns as f64 * 1e-9;
+        let late = self.commands.iter().find(|entry| *entry.at_s.get_ref() + arms_s >= run_s);
         let Some(Entry { at_s, .. }) = late else { return Ok(()) };
         let problem = format!(
-            "at_s = {} lies outside the run, 0 to {run_s}, and would never be played",
+            "at_s = {} lies outside the run of {run_s} s and would never be played: it counts from arming, which comes \
+             {arms_s} s after the start at the earliest",
             at_s.get_ref()
         );
         let line = line_at(text.as_bytes(), at_s.span().start);

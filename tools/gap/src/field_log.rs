@@ -190,6 +190,9 @@ impl FieldLog {
         if let Some(line) = reader.skipped_line() {
             intake.fault(line, FaultKind::passed_over(reader.skipped()));
         }
+        if let Some(line) = reader.dropped_line() {
+            intake.fault(line, FaultKind::Overrun { dropped: reader.skipped().dropped });
+        }
         if let Some(line) = reader.cut_line() {
             intake.fault(line, FaultKind::Cut);
         }

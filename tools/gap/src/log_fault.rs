@@ -133,12 +133,10 @@ pub enum FaultKind {
         /// CAN FD frames.
         fd: u64,
     },
-    /// The recorder says that it dropped frames; it may have written others of which nothing is read.
+    /// The recorder says that it dropped frames.
     Overrun {
         /// Frames that are not in the log.
         dropped: u64,
-        /// Error, remote and CAN FD frames that are.
-        passed_over: [u64; 3],
     },
     /// A reading stood perfectly still while its part moved.
     Frozen {
@@ -196,17 +194,13 @@ fn passed(frames: [u64; 3]) -> String {
     there.map(|(n, kind)| format!("{n} {kind} frames")).collect::<Vec<_>>().join(", ")
 }
 
-/// That so many frames were dropped by who wrote the log, and what else was passed over.
-fn overrun(dropped: u64, passed_over: [u64; 3]) -> String {
+/// That so many frames were dropped by who wrote the log.
+fn overrun(dropped: u64) -> String {
     let s = if dropped == 1 { "" } else { "s" };
-    let mut text = format!(
+    format!(
         "from here on {dropped} frame{s} came faster than candump took them, and are not in the log; record again on a \
          host with less to do"
-    );
-    if passed_over.iter().any(|frames| *frames > 0) {
-        text += &format!("; {} are, of which nothing is read", passed(passed_over));
-    }
-    text
+    )
 }
 
 /// The longest of `gaps`, with when that is.
@@ -252,11 +246,8 @@ impl LogFault {
 
 impl FaultKind {
     pub(crate) const fn passed_over(skipped: Skipped) -> Self {
-        let Skipped { remote, error, fd, dropped } = skipped;
-        match dropped {
-            0 => Self::PassedOver { remote, error, fd },
-            _ => Self::Overrun { dropped, passed_over: [error, remote, fd] },
-        }
+        let Skipped { remote, error, fd, .. } = skipped;
+        Self::PassedOver { remote, error, fd }
     }
 
     /// Whether it leaves out frames of `message` or values of `channel`.
@@ -339,9 +330,7 @@ impl fmt::Display for LogFault {
                     passed([*error, *remote, *fd])
                 )
             }
-            FaultKind::Overrun { dropped, passed_over } => {
-                write!(f, "{}", overrun(*dropped, *passed_over))
-            }
+            FaultKind::Overrun { dropped } => f.write_str(&overrun(*dropped)),
             FaultKind::Frozen { channel, value, unit, from_s, to_s, meanwhile, times } => write!(
                 f,
                 "reading {channel} stood still at {value:.3} {unit} from {from_s:.1} s to {to_s:.1} s{} while {meanwhile}; it is taken as it is, so cut the log there if the sensor froze",
@@ -361,18 +350,14 @@ mod tests {
 
     #[test]
     fn what_the_recorder_dropped_is_told_with_what_was_passed_over() {
-        let told = |skipped| {
-            let kind = FaultKind::passed_over(skipped);
+        let told = |kind: FaultKind| {
             assert!(kind.leaves_out_any());
             LogFault { log: "a.log".into(), line: 7, kind }.to_string()
         };
-        let dropped = Skipped { dropped: 3, ..Skipped::default() };
+        let dropped = told(FaultKind::Overrun { dropped: 3 });
         let wanted = "a.log:7: from here on 3 frames came faster than candump took them, and are not in the log";
-        assert!(told(dropped).starts_with(wanted), "{}", told(dropped));
-        assert!(!told(dropped).contains("nothing is read"));
-        let both = told(Skipped { error: 2, ..dropped });
-        assert!(both.ends_with("; 2 error frames are, of which nothing is read"), "{both}");
-        let error = told(Skipped { error: 2, ..Skipped::default() });
+        assert!(dropped.starts_with(wanted), "{dropped}");
+        let error = told(FaultKind::passed_over(Skipped { error: 2, ..Skipped::default() }));
         assert_eq!(error, "a.log:7: from here on 2 error frames; nothing is read from them");
     }
 }

@@ -139,6 +139,8 @@ mod tests {
             assert!(git.unwrap().success());
         };
         git(&["init", "--quiet"]);
+        // Whatever its owner ignores everywhere.
+        git(&["config", "core.excludesFile", "/dev/null"]);
         for dir in [".venv", "docs"] {
             fs::create_dir(folder.path().join(dir)).unwrap();
         }

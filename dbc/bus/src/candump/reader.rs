@@ -87,6 +87,7 @@ pub struct Reader<R> {
     interface: Arc<str>,
     skipped: Skipped,
     skipped_line: Option<u64>,
+    dropped_line: Option<u64>,
     accepts_cut: bool,
     cut_line: Option<u64>,
     done: bool,
@@ -103,6 +104,7 @@ impl<R: BufRead> Reader<R> {
             interface: "".into(),
             skipped: Skipped::default(),
             skipped_line: None,
+            dropped_line: None,
             accepts_cut: false,
             cut_line: None,
             done: false,
@@ -135,10 +137,16 @@ impl<R: BufRead> Reader<R> {
         self.skipped
     }
 
-    /// Line of the first frame that was passed over, or that says that frames were dropped, counted from 1.
+    /// Line of the first frame that was passed over, counted from 1.
     #[must_use]
     pub fn skipped_line(&self) -> Option<u64> {
         self.skipped_line
+    }
+
+    /// The first line that says that frames were dropped, counted from 1.
+    #[must_use]
+    pub fn dropped_line(&self) -> Option<u64> {
+        self.dropped_line
     }
 
     /// The next data frame, `None` at the end.
@@ -171,6 +179,8 @@ impl<R: BufRead> Reader<R> {
                 Line::Fd => self.skipped.fd += 1,
                 Line::Dropped(frames) => {
                     self.skipped.dropped = self.skipped.dropped.saturating_add(frames);
+                    self.dropped_line.get_or_insert(self.line);
+                    continue;
                 }
                 Line::Blank => continue,
             }
@@ -286,7 +296,7 @@ mod tests {
         let mut reader = Reader::new(log.as_bytes(), "a.log");
         assert_eq!(reader.by_ref().filter_map(Result::ok).count(), 3);
         assert_eq!(reader.skipped(), Skipped { dropped: 5, ..Skipped::default() });
-        assert_eq!(reader.skipped_line(), Some(2));
+        assert_eq!((reader.skipped_line(), reader.dropped_line()), (None, Some(2)));
     }
 
     #[test]

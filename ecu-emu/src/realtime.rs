@@ -20,7 +20,7 @@ use xt28_sim::effects::Overlay;
 use crate::args::Args;
 use crate::listening;
 use crate::schedule::{STALE, Schedule};
-use crate::sending::send;
+use crate::sending::Outlet;
 use crate::serial::Serial;
 use crate::tell;
 use crate::watch::Watch;
@@ -53,6 +53,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         wires.discard()?;
     }
     let (mut schedule, mut watch) = (Schedule::new(Instant::now()), Watch::default());
+    let mut outlet = Outlet::default();
     let last = args.duration.map(Duration::from_secs_f64);
     let (mut now, mut out, mut bytes) = (SimTime::ZERO, Outbox::with_capacity(64), Vec::new());
     let over = |wall: SimTime| last.is_some_and(|last| wall.since(SimTime::ZERO) >= last);
@@ -72,9 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Problem> {
         }
         wires.listen(now, &mut emulator)?;
         emulator.tick(now, &mut out);
-        if !send(&mut bus, now, out.frames())? {
-            watch.note_full();
-        }
+        outlet.send((&mut bus, &args.bus), now, out.frames())?;
         wires.send(now, &emulator)?;
         bytes.clear();
         emulator.take_gnss(&mut bytes);

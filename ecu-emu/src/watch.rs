@@ -1,10 +1,7 @@
-//! What there is to tell of the bus: a double of the machine, a controller that went bus-off, and one whose frames do
-//! not leave.
+//! What there is to tell of the bus: a double of the machine, and a controller that went bus-off.
 
 use xt28_dbc::messages::{PosFront, WheelSpeedJoint};
 use xt28_dbc::{CanId, Frame};
-
-use crate::sending::no_frame_leaves;
 
 /// Sent every tick by either profile's arm ECU and drive ECU, and by nobody else.
 const ONLY_OURS: [(CanId, &str); 2] =
@@ -17,9 +14,6 @@ pub(crate) struct Watch {
     double: Option<&'static str>,
     told: bool,
     is_off: bool,
-    /// Frames did not leave, and whether that was told.
-    is_full: bool,
-    told_full: bool,
 }
 
 impl Watch {
@@ -29,22 +23,14 @@ impl Watch {
         self.double = self.double.or(ours.map(|(_, name)| *name));
     }
 
-    /// Takes note that frames were thrown away, as none leaves.
-    pub(crate) const fn note_full(&mut self) {
-        self.is_full = true;
-    }
-
     /// News since the last call of the bus called `name`, a line each: of a double of the machine (another
     /// emulator, a log that is played back, the machine itself), as who listens then follows two at once; and of
-    /// a controller that `was_off` the bus since, be it for less than a tick, or `is_off`; and, once, of one whose
-    /// frames do not leave.
-    pub(crate) fn news(&mut self, name: &str, [was_off, is_off]: [bool; 2]) -> [Option<String>; 3] {
+    /// a controller that `was_off` the bus since, be it for less than a tick, or `is_off`.
+    pub(crate) fn news(&mut self, name: &str, [was_off, is_off]: [bool; 2]) -> [Option<String>; 2] {
         let double = self.double.filter(|_| !self.told);
         self.told |= double.is_some();
         let went_off = was_off && !self.is_off;
         self.is_off = is_off;
-        let filled = self.is_full && !self.told_full;
-        self.told_full |= filled;
         [
             double.map(|frame| {
                 format!(
@@ -58,7 +44,6 @@ impl Watch {
                      `ip -details -statistics link show {name}`"
                 )
             }),
-            filled.then(|| no_frame_leaves(name)),
         ]
     }
 }
@@ -77,22 +62,11 @@ mod tests {
             watch
         };
         let mut watch = heard(CanId::Extended(0x18FE_1026));
-        let [double, off, _] = watch.news("vcan0", WELL);
+        let [double, off] = watch.news("vcan0", WELL);
         assert!(double.is_some_and(|line| line.contains("vcan0 sends PosFront")) && off.is_none());
         watch.note(&Frame::new(PosFront::ID, &[0; 4]).unwrap());
-        assert_eq!(watch.news("vcan0", WELL), [None, None, None]);
-        assert_eq!(heard(CanId::Standard(0x026)).news("vcan0", WELL), [None, None, None]);
-    }
-
-    #[test]
-    fn a_bus_that_takes_nothing_is_told_once() {
-        let mut watch = Watch::default();
-        assert_eq!(watch.news("can0", WELL)[2], None);
-        for told in [true, false] {
-            watch.note_full();
-            let line = watch.news("can0", WELL)[2].take();
-            assert_eq!(line.is_some_and(|line| line.contains("can0: no frame leaves")), told);
-        }
+        assert_eq!(watch.news("vcan0", WELL), [None, None]);
+        assert_eq!(heard(CanId::Standard(0x026)).news("vcan0", WELL), [None, None]);
     }
 
     #[test]

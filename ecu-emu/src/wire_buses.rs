@@ -5,23 +5,23 @@ use xt28_bus::{Bus, SocketCan};
 use xt28_machine::SimTime;
 
 use crate::listening::{AT_ONCE, discard};
-use crate::sending::{no_frame_leaves, send};
-use crate::tell;
+use crate::sending::Outlet;
 
 type Problem = Box<dyn std::error::Error>;
 
 /// Wires that have an interface.
 pub(crate) struct WireBuses {
     buses: Vec<(Wire, SocketCan)>,
-    /// Each interface's name, and whether it was told that none of its frames leaves.
-    stuck: Vec<(String, bool)>,
+    /// Each interface's name and the way out to it.
+    outlets: Vec<(String, Outlet)>,
 }
 
 impl WireBuses {
     pub(crate) fn open(named: &[(Wire, String)]) -> Result<Self, Problem> {
         let open = |(wire, interface): &(Wire, String)| Ok((*wire, SocketCan::open(interface)?));
-        let stuck = named.iter().map(|(_, interface)| (interface.clone(), false)).collect();
-        Ok(Self { buses: named.iter().map(open).collect::<Result<_, Problem>>()?, stuck })
+        let outlet = |(_, interface): &(Wire, String)| (interface.clone(), Outlet::default());
+        let outlets = named.iter().map(outlet).collect();
+        Ok(Self { buses: named.iter().map(open).collect::<Result<_, Problem>>()?, outlets })
     }
 
     /// Takes what others sent since the last tick. An ECU reads its boxes once a tick anyway.
@@ -43,12 +43,10 @@ impl WireBuses {
         Ok(())
     }
 
-    /// Sends what the machine put on its wires in this tick. One that takes nothing loses it, which is told once.
+    /// Sends what the machine put on its wires in this tick.
     pub(crate) fn send(&mut self, now: SimTime, emulator: &Emulator) -> Result<(), Problem> {
-        for ((wire, bus), (interface, told)) in self.buses.iter_mut().zip(&mut self.stuck) {
-            if !send(bus, now, emulator.on_wire(*wire))? && !std::mem::replace(told, true) {
-                tell(no_frame_leaves(interface));
-            }
+        for ((wire, bus), (name, outlet)) in self.buses.iter_mut().zip(&mut self.outlets) {
+            outlet.send((bus, name), now, emulator.on_wire(*wire))?;
         }
         Ok(())
     }

@@ -278,9 +278,8 @@ impl Gateway {
     }
 
     /// What the policy wants, given what it has seen since the kernel was armed; before that, nothing but its brake.
-    fn requested(&self) -> Option<Command> {
+    fn requested(&self, joint_rad: f64) -> Option<Command> {
         let (command, seen_armed) = self.request?;
-        let joint_rad = self.measured().front_angle_rad;
         let moves = seen_armed.is_some() && seen_armed == self.armed_now();
         // What is not finite the kernel has to see.
         let as_it_is = moves || !command.is_finite() || !joint_rad.is_finite();
@@ -308,11 +307,11 @@ impl Gateway {
         } else {
             self.order
         };
-        let sent = self.writer.sent();
+        let (sent, measured) = (self.writer.sent(), self.measured());
         Input {
             order,
-            request: self.requested(),
-            measured: self.measured(),
+            request: self.requested(measured.front_angle_rad),
+            measured,
             is_braked: self.is_braked(),
             arm: self.arm_ecu.link(sent.map(|(arm, _)| arm)),
             drive: self.drive_ecu.link(sent.map(|(_, drive)| drive)),

@@ -341,10 +341,7 @@ mod tests {
             ("stroke_max_m = 0.50 ", "stroke_max_m = 0.9 "),
             ("stroke_max_m = 0.50 ", "stroke_max_m = 0.855 "),
         ] {
-            let error = refusal(from, to);
-            let key = from.split(' ').next().unwrap();
-            assert!(error.starts_with(&format!("m.toml: arms.{key} = ")), "{error}");
-            assert!(error.contains("lever of 0.05 m"), "{error}");
+            assert_refused("arms", from, to, "lever of 0.05 m");
         }
         let longer =
             Machine::builtin_text().replace("stroke_max_m = 0.50 ", "stroke_max_m = 0.70 ");
@@ -362,10 +359,7 @@ mod tests {
             ("pivot_to_wheel_m = 1.008", "pivot_to_wheel_m = 1e-12", "at least 0.05 m"),
             ("pivot_to_wheel_m = 1.008", "pivot_to_wheel_m = 60.0", "lift the wheel by 0.01 N"),
         ] {
-            let error = refusal(from, to);
-            let key = from.split(' ').next().unwrap();
-            assert!(error.starts_with(&format!("m.toml: arms.{key} = ")), "{error}");
-            assert!(error.contains(says), "{error}");
+            assert_refused("arms", from, to, says);
         }
         // A stroke that its triangle allows and its wheel does not.
         let error = refusal("stroke_max_m = 0.50 ", "stroke_max_m = 0.80 ");
@@ -375,14 +369,21 @@ mod tests {
 
     #[test]
     fn a_number_above_zero_may_still_be_of_no_use() {
-        for (from, to, wanted) in [
-            ("gnss_rate_hz = 8.0 ", "gnss_rate_hz = 1e-20 ", "it must be at least 0.001 Hz"),
-            ("angle_max_deg = 25.0 ", "angle_max_deg = 90.0 ", "it must be below 90 degrees"),
-            ("angle_max_deg = 25.0 ", "angle_max_deg = 400.0 ", "it must be below 90 degrees"),
+        let (rate, angle) = ("gnss_rate_hz = 8.0 ", "angle_max_deg = 25.0 ");
+        for (section, from, to, wanted) in [
+            ("sensors", rate, "gnss_rate_hz = 1e-20 ", "it must be at least 0.001 Hz"),
+            ("articulation", angle, "angle_max_deg = 90.0 ", "it must be below 90 degrees"),
+            ("articulation", angle, "angle_max_deg = 400.0 ", "it must be below 90 degrees"),
         ] {
-            let error = refusal(from, to);
-            let key = from.split(' ').next().unwrap();
-            assert!(error.contains(&format!(".{key} = ")) && error.contains(wanted), "{error}");
+            assert_refused(section, from, to, wanted);
         }
+    }
+
+    /// `from`, a key of a section and its value, refused as `to` with what is `wanted` of it.
+    fn assert_refused(section: &str, from: &str, to: &str, wanted: &str) {
+        let error = refusal(from, to);
+        let key = from.split(' ').next().unwrap();
+        assert!(error.starts_with(&format!("m.toml: {section}.{key} = ")), "{error}");
+        assert!(error.contains(wanted), "{error}");
     }
 }

@@ -62,7 +62,7 @@ pub(super) fn script_beside(path: &Path) -> PathBuf {
 }
 
 /// Refuses to replace a file beside `path` that nobody named and that is no drive's script.
-pub(super) fn ensure_free(path: &Path) -> Result<(), Failure> {
+fn ensure_free(path: &Path) -> Result<(), Failure> {
     let script = script_beside(path);
     if is_other(&script, Manoeuvre::wrote) {
         let (script, path) = (script.display(), path.display());
